@@ -1,0 +1,1 @@
+//! The script language of rule actions: a subset of GML.

@@ -1,0 +1,1 @@
+//! Graph grammar rules: parse, check, match, rewrite.

@@ -1,0 +1,1 @@
+//! OBJ and PLY in and out, with an import report.

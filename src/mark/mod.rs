@@ -1,0 +1,1 @@
+//! Selectors: which edges a feature crosses, and where.

@@ -1,0 +1,191 @@
+//! Attributes and labelled links: name -> value on nodes, label -> node between nodes (paper, Definition 1).
+//!
+//! Columns are sparse: a mark on a mesh of a million faces costs what it costs on a thousand.
+//! Each column keeps an index from value to ids, on which the rule matcher anchors.
+
+use super::ids::{Domain, Node};
+use super::value::{Key, Value};
+use rustc_hash::FxHashMap;
+use smallvec::SmallVec;
+use std::collections::BTreeSet;
+
+/// An interned name of an attribute or a link label; valid for the mesh that gave it.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Debug)]
+pub struct Symbol(pub(crate) u32);
+
+#[derive(Clone, Default, Debug)]
+pub(crate) struct Column {
+    pub(crate) values: FxHashMap<u32, Value>,
+    index: FxHashMap<Key, BTreeSet<u32>>,
+}
+
+impl Column {
+    fn set(&mut self, id: u32, value: Option<Value>) -> Option<Value> {
+        let key = value.as_ref().map(Key::from);
+        let old = match value {
+            Some(value) => self.values.insert(id, value),
+            None => self.values.remove(&id),
+        };
+        if let Some(old) = &old
+            && let Some(ids) = self.index.get_mut(&Key::from(old))
+        {
+            ids.remove(&id);
+        }
+        if let Some(key) = key {
+            self.index.entry(key).or_default().insert(id);
+        }
+        old
+    }
+}
+
+#[derive(Clone, Default, Debug)]
+pub(crate) struct Attributes {
+    names: Vec<Box<str>>,
+    by_name: FxHashMap<Box<str>, Symbol>,
+    columns: FxHashMap<(Domain, Symbol), Column>,
+    links: FxHashMap<(Symbol, Node), SmallVec<[Node; 1]>>,
+    back_links: FxHashMap<(Symbol, Node), SmallVec<[Node; 1]>>,
+    /// Labels that carry at least one link ever, so that removing an element looks at these only.
+    labels: Vec<Symbol>,
+}
+
+impl Attributes {
+    pub(crate) fn intern(&mut self, name: &str) -> Symbol {
+        if let Some(&symbol) = self.by_name.get(name) {
+            return symbol;
+        }
+        let symbol = Symbol(self.names.len() as u32);
+        self.names.push(name.into());
+        self.by_name.insert(name.into(), symbol);
+        symbol
+    }
+
+    pub(crate) fn symbol(&self, name: &str) -> Option<Symbol> {
+        self.by_name.get(name).copied()
+    }
+
+    pub(crate) fn name(&self, symbol: Symbol) -> &str {
+        &self.names[symbol.0 as usize]
+    }
+
+    pub(crate) fn get(&self, node: Node, name: Symbol) -> Option<&Value> {
+        self.columns.get(&(node.domain(), name))?.values.get(&node.id())
+    }
+
+    pub(crate) fn set(&mut self, node: Node, name: Symbol, value: Option<Value>) -> Option<Value> {
+        self.columns.entry((node.domain(), name)).or_default().set(node.id(), value)
+    }
+
+    /// Ids that carry exactly `value`, ascending.
+    pub(crate) fn with_value(
+        &self,
+        domain: Domain,
+        name: Symbol,
+        value: &Value,
+    ) -> impl Iterator<Item = u32> {
+        self.columns
+            .get(&(domain, name))
+            .and_then(|column| column.index.get(&Key::from(value)))
+            .into_iter()
+            .flatten()
+            .copied()
+    }
+
+    /// Ids that carry the attribute with any value, ascending.
+    pub(crate) fn with_name(&self, domain: Domain, name: Symbol) -> Vec<u32> {
+        let mut ids: Vec<u32> = self
+            .columns
+            .get(&(domain, name))
+            .into_iter()
+            .flat_map(|column| column.values.keys().copied())
+            .collect();
+        ids.sort_unstable();
+        ids
+    }
+
+    /// Attribute names that `node` carries, in the order in which the names were first used.
+    pub(crate) fn names_of(&self, node: Node) -> Vec<Symbol> {
+        let mut names: Vec<Symbol> = self
+            .columns
+            .iter()
+            .filter(|((domain, _), column)| {
+                *domain == node.domain() && column.values.contains_key(&node.id())
+            })
+            .map(|((_, name), _)| *name)
+            .collect();
+        names.sort_unstable();
+        names
+    }
+
+    pub(crate) fn links(&self, from: Node, label: Symbol) -> &[Node] {
+        self.links.get(&(label, from)).map_or(&[], |nodes| nodes.as_slice())
+    }
+
+    pub(crate) fn back_links(&self, to: Node, label: Symbol) -> &[Node] {
+        self.back_links.get(&(label, to)).map_or(&[], |nodes| nodes.as_slice())
+    }
+
+    /// Adds (`true`) or removes the link; returns false when nothing changed.
+    pub(crate) fn set_link(&mut self, from: Node, label: Symbol, to: Node, present: bool) -> bool {
+        let nodes = self.links.entry((label, from)).or_default();
+        let at = nodes.iter().position(|&node| node == to);
+        if at.is_some() == present {
+            return false;
+        }
+        let back = self.back_links.entry((label, to)).or_default();
+        if present {
+            nodes.push(to);
+            back.push(from);
+            if !self.labels.contains(&label) {
+                self.labels.push(label);
+            }
+        } else {
+            nodes.retain(|node| *node != to);
+            back.retain(|node| *node != from);
+        }
+        true
+    }
+
+    /// Every link that starts or ends at `node`, as (from, label, to).
+    pub(crate) fn links_of(&self, node: Node) -> Vec<(Node, Symbol, Node)> {
+        let mut found = Vec::new();
+        for &label in &self.labels {
+            found.extend(self.links(node, label).iter().map(|&to| (node, label, to)));
+            found.extend(
+                self.back_links(node, label)
+                    .iter()
+                    .filter(|&&from| from != node)
+                    .map(|&from| (from, label, node)),
+            );
+        }
+        found
+    }
+
+    pub(crate) fn is_empty(&self) -> bool {
+        self.columns.is_empty() && self.labels.is_empty()
+    }
+
+    /// Renumbers every node; nodes mapped to `None` lose what they carried.
+    pub(crate) fn remap(&mut self, map: impl Fn(Node) -> Option<Node>) {
+        for ((domain, _), column) in &mut self.columns {
+            let old = std::mem::take(column);
+            for (id, value) in old.values {
+                if let Some(node) = map(Node::new(*domain, id)) {
+                    column.set(node.id(), Some(value));
+                }
+            }
+        }
+        let old = std::mem::take(&mut self.links);
+        self.back_links.clear();
+        // Sorted so that the order of several links from one node does not depend on hashing.
+        let mut links: Vec<_> = old.into_iter().collect();
+        links.sort_unstable_by_key(|(key, _)| *key);
+        for ((label, from), nodes) in links {
+            for to in nodes {
+                if let (Some(from), Some(to)) = (map(from), map(to)) {
+                    self.set_link(from, label, to, true);
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,160 @@
+//! Closing the holes that removed elements leave, and turning a mesh back into polygons.
+
+use super::ids::{DEAD, FaceId, HalfEdgeId, NONE, Node, VertexId};
+use super::{Mesh, Polygons};
+
+/// Old id -> new id per kind of element; `None` for what was removed.
+#[derive(Clone, PartialEq, Eq, Default, Debug)]
+pub struct Renumbering {
+    vertices: Vec<u32>,
+    edges: Vec<u32>,
+    faces: Vec<u32>,
+    loops: Vec<u32>,
+}
+
+impl Renumbering {
+    /// The new id of a vertex.
+    pub fn vertex(&self, v: VertexId) -> Option<VertexId> {
+        lookup(&self.vertices, v.index()).map(VertexId)
+    }
+
+    /// The new id of a half-edge.
+    pub fn half_edge(&self, h: HalfEdgeId) -> Option<HalfEdgeId> {
+        lookup(&self.edges, h.edge() as usize).map(|e| HalfEdgeId(2 * e | (h.0 & 1)))
+    }
+
+    /// The new id of a face or boundary loop.
+    pub fn face(&self, f: FaceId) -> Option<FaceId> {
+        if f.is_boundary() {
+            lookup(&self.loops, f.index()).map(FaceId::boundary)
+        } else {
+            lookup(&self.faces, f.index()).map(FaceId)
+        }
+    }
+
+    /// The new name of a node.
+    pub fn node(&self, node: Node) -> Option<Node> {
+        match node {
+            Node::Vertex(v) => self.vertex(v).map(Node::Vertex),
+            Node::HalfEdge(h) => self.half_edge(h).map(Node::HalfEdge),
+            Node::Face(f) => self.face(f).map(Node::Face),
+        }
+    }
+}
+
+fn lookup(table: &[u32], index: usize) -> Option<u32> {
+    table.get(index).copied().filter(|&id| id != NONE)
+}
+
+/// New numbers for what is alive, in the old order.
+fn number(alive: impl Iterator<Item = bool>) -> Vec<u32> {
+    let mut count = 0;
+    alive
+        .map(|alive| {
+            if !alive {
+                return NONE;
+            }
+            count += 1;
+            count - 1
+        })
+        .collect()
+}
+
+impl Mesh {
+    /// True when no id is a hole.
+    pub fn is_compact(&self) -> bool {
+        let alive = |table: &[u32]| table.iter().all(|&h| h != DEAD);
+        alive(&self.vertices)
+            && alive(&self.faces)
+            && alive(&self.loops)
+            && self.half_edges.iter().all(|h| h.source != DEAD)
+    }
+
+    /// Renumbers all elements without holes, keeping their order, and forgets which faces were split off from which.
+    /// Does nothing to the numbers of a mesh without holes. Must not be called inside a transaction.
+    pub fn compact(&mut self) -> Renumbering {
+        debug_assert!(self.log.depth == 0, "compact inside a transaction");
+        self.face_parents = (0..self.faces.len() as u32).collect();
+        let map = Renumbering {
+            vertices: number(self.vertices.iter().map(|&h| h != DEAD)),
+            edges: number(self.half_edges.chunks_exact(2).map(|pair| pair[0].source != DEAD)),
+            faces: number(self.faces.iter().map(|&h| h != DEAD)),
+            loops: number(self.loops.iter().map(|&h| h != DEAD)),
+        };
+        if self.is_compact() {
+            return map;
+        }
+        let half_edge = |id: u32| map.half_edge(HalfEdgeId(id)).map_or(NONE, |h| h.0);
+        self.half_edges.retain(|h| h.source != DEAD);
+        for record in &mut self.half_edges {
+            record.next = half_edge(record.next);
+            record.prev = half_edge(record.prev);
+            record.source = map.vertex(VertexId(record.source)).map_or(NONE, |v| v.0);
+            record.face = map.face(FaceId(record.face)).map_or(NONE, |f| f.0);
+        }
+        retain_by(&mut self.corner_texcoords, |i| map.edges[i / 2] != NONE);
+        retain_by(&mut self.positions, |i| map.vertices[i] != NONE);
+        retain_by(&mut self.face_sets, |i| map.faces[i] != NONE);
+        for table in [&mut self.vertices, &mut self.faces, &mut self.loops] {
+            table.retain(|&h| h != DEAD);
+            for h in table {
+                *h = if *h == NONE { NONE } else { half_edge(*h) };
+            }
+        }
+        self.face_parents = (0..self.faces.len() as u32).collect();
+        self.attributes.remap(|node| map.node(node));
+        let edges = std::mem::take(&mut self.edge_sharpness);
+        self.edge_sharpness = edges.into_iter().map(|(e, s)| (map.edges[e as usize], s)).collect();
+        let vertices = std::mem::take(&mut self.vertex_sharpness);
+        self.vertex_sharpness = vertices.into_iter().map(|(v, s)| (map.vertices[v as usize], s)).collect();
+        map
+    }
+
+    /// The mesh as polygons, removed elements left out.
+    ///
+    /// The first vertex of each face is that of the half-edge the face names. A face keeps its texture coordinates
+    /// only when all its corners have one.
+    pub fn to_polygons(&self) -> Polygons {
+        let vertex_numbers = number(self.vertices.iter().map(|&h| h != DEAD));
+        let mut polygons = Polygons {
+            positions: self.vertices().map(|v| self.position(v)).collect(),
+            sets: self.sets.clone(),
+            texcoords: self.texcoords.clone(),
+            material_libraries: self.material_libraries.clone(),
+            ..Polygons::default()
+        };
+        for f in self.faces() {
+            let start = polygons.face_vertices.len();
+            polygons.face_vertices.extend(self.face_vertices(f).map(|v| vertex_numbers[v.index()]));
+            polygons.face_sizes.push((polygons.face_vertices.len() - start) as u32);
+            if let Some(&set) = self.face_sets.get(f.index()) {
+                polygons.face_sets.push(set);
+            }
+            if self.has_texcoords() {
+                let corners = self.face_half_edges(f).map(|h| self.corner_texcoords[h.index()]);
+                polygons.face_texcoords.extend(corners);
+                let corners = &mut polygons.face_texcoords[start..];
+                if corners.contains(&NONE) {
+                    corners.fill(NONE);
+                }
+            }
+        }
+        for h in self.edges().filter(|&h| self.edge_sharpness(h) > 0.0) {
+            let [a, b] = [self.source(h), self.target(h)].map(|v| vertex_numbers[v.index()]);
+            polygons.creases.push((a, b, self.edge_sharpness(h)));
+        }
+        for v in self.vertices().filter(|&v| self.vertex_sharpness(v) > 0.0) {
+            polygons.corners.push((vertex_numbers[v.index()], self.vertex_sharpness(v)));
+        }
+        polygons
+    }
+}
+
+/// Keeps the entries whose index passes; leaves an empty table empty.
+fn retain_by<T>(table: &mut Vec<T>, keep: impl Fn(usize) -> bool) {
+    let mut index = 0;
+    table.retain(|_| {
+        index += 1;
+        keep(index - 1)
+    });
+}

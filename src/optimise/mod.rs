@@ -1,0 +1,1 @@
+//! Fits the changed mesh to the frozen surface.

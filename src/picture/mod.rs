@@ -1,0 +1,1 @@
+//! Figures: cage, limit surface, deviation map.

@@ -1,0 +1,1 @@
+//! Catmull-Clark subdivision: refinement, limit masks, evaluation.

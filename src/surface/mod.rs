@@ -1,0 +1,1 @@
+//! A frozen limit surface: line hit, closest point, deviation.
