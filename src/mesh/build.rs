@@ -67,7 +67,7 @@ impl Mesh {
             mesh.faces.push(half_edge_of[start]);
             start += size;
         }
-        mesh.face_parents = (0..mesh.faces.len() as u32).collect();
+        mesh.first_new_face = mesh.faces.len() as u32;
         mesh.close_boundaries();
 
         let fans = mesh.separate_fans();

@@ -413,6 +413,7 @@ impl Mesh {
         }
         self.write_half_edge(h, |r| *r = HalfEdge::DEAD);
         self.write_half_edge(h.mate(), |r| *r = HalfEdge::DEAD);
+        self.add_hole();
     }
 
     fn remove_vertex(&mut self, v: VertexId) {
@@ -421,11 +422,13 @@ impl Mesh {
             self.set_vertex_sharpness(v, 0.0);
         }
         self.write_vertex(v, DEAD);
+        self.add_hole();
     }
 
     fn remove_face(&mut self, f: FaceId) {
         self.strip(Node::Face(f));
         self.write_face(f, DEAD);
+        self.add_hole();
     }
 
     /// Takes attributes and links off a node that is about to go.

@@ -22,6 +22,7 @@ pub(crate) enum Change {
     VertexAdded,
     FaceAdded,
     LoopAdded,
+    HoleAdded,
     Attribute { node: Node, name: Symbol },
     Link { from: Node, label: Symbol, to: Node, added: bool },
     EdgeSharpness { edge: u32, old: f32 },

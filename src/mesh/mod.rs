@@ -60,8 +60,12 @@ pub struct Mesh {
     faces: Vec<u32>,
     /// One half-edge per boundary loop, `DEAD` for a removed one.
     loops: Vec<u32>,
-    /// The face each face was split off from; a face that was there from the start is its own parent.
+    /// Faces from this id on were split off from others; the ones below were there from the start.
+    first_new_face: u32,
+    /// The face each face from `first_new_face` on was split off from.
     face_parents: Vec<u32>,
+    /// Removed elements that still take up an id.
+    holes: usize,
     attributes: Attributes,
     edge_sharpness: FxHashMap<u32, f32>,
     vertex_sharpness: FxHashMap<u32, f32>,
@@ -187,11 +191,15 @@ impl Mesh {
         self.positions[v.index()] = position;
     }
 
-    /// The face of the mesh as it was loaded in which `f` lies (`f` itself when it was there from the start).
+    /// The face of the mesh as it was loaded in which `f` lies (`f` itself when it was there from the start or is a shell of its own).
     pub fn original_face(&self, f: FaceId) -> FaceId {
         let mut f = f;
-        while !f.is_boundary() && self.face_parents[f.index()] != f.0 {
-            f = FaceId(self.face_parents[f.index()]);
+        while !f.is_boundary() && f.0 >= self.first_new_face {
+            let parent = self.face_parents[(f.0 - self.first_new_face) as usize];
+            if parent == f.0 {
+                break;
+            }
+            f = FaceId(parent);
         }
         f
     }

@@ -59,6 +59,7 @@ impl Mesh {
                     self.face_sets.pop();
                 }
             }
+            Change::HoleAdded => self.holes -= 1,
             Change::LoopAdded => {
                 self.loops.pop();
             }
@@ -106,6 +107,12 @@ impl Mesh {
                 _ => [None, None],
             })
             .flatten()
+    }
+
+    /// One more id that nothing uses any longer.
+    pub(super) fn add_hole(&mut self) {
+        self.holes += 1;
+        self.log.push(Change::HoleAdded);
     }
 
     // The Euler operators change the tables only through these.

@@ -15,6 +15,14 @@ impl Mesh {
         (0..self.half_edge_bound() as u32).map(HalfEdgeId).filter(|&h| self.has_half_edge(h))
     }
 
+    /// Numbers of vertices, edges and real faces that exist; no cost on a mesh without holes.
+    pub fn counts(&self) -> [usize; 3] {
+        if self.is_compact() {
+            return [self.vertex_bound(), self.half_edge_bound() / 2, self.face_bound()];
+        }
+        [self.vertices().count(), self.edges().count(), self.faces().count()]
+    }
+
     /// One half-edge (the even one) of each edge that exists, ascending.
     pub fn edges(&self) -> impl DoubleEndedIterator<Item = HalfEdgeId> {
         (0..self.half_edge_bound() as u32 / 2).map(|e| HalfEdgeId(2 * e)).filter(|&h| self.has_half_edge(h))
