@@ -25,6 +25,9 @@ pub enum EulerError {
     /// `makeEF` would make an edge from a vertex to itself.
     #[error("makeEF needs two different vertices; {} and {} both start at vertex {}", .0.0, .1.0, .2.0)]
     LoopEdge(HalfEdgeId, HalfEdgeId, VertexId),
+    /// The new edge would have the outside of the mesh on both sides.
+    #[error("an edge needs a face; at half-edge {} both sides of the new edge would be outside of the mesh", .0.0)]
+    Outside(HalfEdgeId),
     /// `killEF` needs two different faces.
     #[error("killEF needs an edge between two faces; both sides of half-edge {} lie in the same face", .0.0)]
     SameFace(HalfEdgeId),
@@ -110,7 +113,7 @@ impl Mesh {
     ///
     /// # Errors
     /// [`EulerError::NoSuchHalfEdge`], [`EulerError::DifferentVertices`], [`EulerError::NotFinite`],
-    /// [`EulerError::Full`].
+    /// [`EulerError::Outside`], [`EulerError::Full`].
     pub fn make_ev(
         &mut self,
         e0: HalfEdgeId,
@@ -126,6 +129,9 @@ impl Mesh {
         }
         if !position.is_finite() {
             return Err(EulerError::NotFinite);
+        }
+        if self.face(e0).is_boundary() && self.face(e1).is_boundary() {
+            return Err(EulerError::Outside(e0));
         }
         let sharpness = self.edge_sharpness(e0);
         let splits_edge = e0 != e1 && self.vertex_cw(e0) == e1;
@@ -213,7 +219,7 @@ impl Mesh {
     ///
     /// # Errors
     /// [`EulerError::NoSuchHalfEdge`], [`EulerError::DifferentFaces`], [`EulerError::LoopEdge`],
-    /// [`EulerError::Full`].
+    /// [`EulerError::Outside`], [`EulerError::Full`].
     pub fn make_ef(&mut self, e0: HalfEdgeId, e1: HalfEdgeId) -> Result<HalfEdgeId, EulerError> {
         self.check(e0)?;
         self.check(e1)?;
@@ -221,6 +227,9 @@ impl Mesh {
         let old_face = self.face(e0);
         if old_face != self.face(e1) {
             return Err(EulerError::DifferentFaces(e0, e1));
+        }
+        if old_face.is_boundary() {
+            return Err(EulerError::Outside(e0));
         }
         let (a, c) = (self.source(e0), self.source(e1));
         if a == c {
@@ -385,15 +394,8 @@ impl Mesh {
         HalfEdgeId(self.half_edges.len() as u32 - 2)
     }
 
-    /// A new face beside `like`: real or boundary as it, with its group and material.
+    /// A new face beside `like`, with its group and material.
     fn add_face(&mut self, like: Option<FaceId>) -> FaceId {
-        if let Some(like) = like
-            && like.is_boundary()
-        {
-            self.loops.push(NONE);
-            self.log.push(Change::LoopAdded);
-            return FaceId::boundary(self.loops.len() as u32 - 1);
-        }
         let id = self.faces.len() as u32;
         self.faces.push(NONE);
         self.face_parents.push(like.map_or(id, |f| f.0));

@@ -8,7 +8,12 @@ use glam::DVec3;
 /// A place in the log to roll back to.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 #[must_use = "a checkpoint is given back to `commit` or `rollback`"]
-pub struct Checkpoint(pub(crate) usize);
+pub struct Checkpoint {
+    /// Length of the log.
+    pub(crate) changes: usize,
+    /// Transactions that were open around it.
+    pub(crate) depth: u32,
+}
 
 /// One change, with what is needed to take it back. Bulky old values stand on stacks of their own, so that the
 /// common topological entries stay small.
@@ -21,7 +26,6 @@ pub(crate) enum Change {
     EdgeAdded,
     VertexAdded,
     FaceAdded,
-    LoopAdded,
     HoleAdded,
     Attribute { node: Node, name: Symbol },
     Link { from: Node, label: Symbol, to: Node, added: bool },

@@ -6,15 +6,16 @@ use super::{HalfEdge, Mesh, set_or_remove};
 
 impl Mesh {
     /// Opens a transaction. Transactions nest; close each with [`commit`](Self::commit) or
-    /// [`rollback`](Self::rollback), innermost first.
+    /// [`rollback`](Self::rollback). Closing an outer one closes those inside it.
     pub fn begin(&mut self) -> Checkpoint {
+        let checkpoint = self.log_position();
         self.log.depth += 1;
-        Checkpoint(self.log.changes.len())
+        checkpoint
     }
 
     /// Keeps what was done since `checkpoint`.
-    pub fn commit(&mut self, _checkpoint: Checkpoint) {
-        self.log.depth = self.log.depth.saturating_sub(1);
+    pub fn commit(&mut self, checkpoint: Checkpoint) {
+        self.log.depth = checkpoint.depth;
         if self.log.depth == 0 {
             self.log.changes.clear();
             self.log.positions.clear();
@@ -24,7 +25,7 @@ impl Mesh {
 
     /// Takes back everything done since `checkpoint`: topology, positions, attributes, links, sharpness.
     pub fn rollback(&mut self, checkpoint: Checkpoint) {
-        while self.log.changes.len() > checkpoint.0 {
+        while self.log.changes.len() > checkpoint.changes {
             if let Some(change) = self.log.changes.pop() {
                 self.undo(change);
             }
@@ -60,9 +61,6 @@ impl Mesh {
                 }
             }
             Change::HoleAdded => self.holes -= 1,
-            Change::LoopAdded => {
-                self.loops.pop();
-            }
             Change::Attribute { node, name } => {
                 if let Some(old) = self.log.values.pop() {
                     self.attributes.set(node, name, old);
@@ -84,22 +82,22 @@ impl Mesh {
     /// Half-edges whose connectivity changed since `checkpoint`, in order of change, with repetitions; some may have
     /// been removed since. Empty outside of a transaction.
     pub fn touched_since(&self, checkpoint: Checkpoint) -> impl Iterator<Item = HalfEdgeId> {
-        self.log.changes[checkpoint.0.min(self.log.changes.len())..].iter().filter_map(
-            |change| match change {
+        self.log.changes[checkpoint.changes.min(self.log.changes.len())..].iter().filter_map(|change| {
+            match change {
                 Change::HalfEdge { id, .. } => Some(HalfEdgeId(*id)),
                 _ => None,
-            },
-        )
+            }
+        })
     }
 
     /// A checkpoint at the present end of the log, for [`touched_since`](Self::touched_since) only.
     pub fn log_position(&self) -> Checkpoint {
-        Checkpoint(self.log.changes.len())
+        Checkpoint { changes: self.log.changes.len(), depth: self.log.depth }
     }
 
     /// Nodes whose attributes or links changed since `checkpoint`, in order of change, with repetitions.
     pub fn annotated_since(&self, checkpoint: Checkpoint) -> impl Iterator<Item = Node> {
-        self.log.changes[checkpoint.0.min(self.log.changes.len())..]
+        self.log.changes[checkpoint.changes.min(self.log.changes.len())..]
             .iter()
             .flat_map(|change| match change {
                 Change::Attribute { node, .. } => [Some(*node), None],
