@@ -1,1 +1,21 @@
 //! Catmull-Clark subdivision: refinement, limit masks, evaluation.
+//!
+//! The boundary follows the cubic B-spline of its control points ("edge only" in OpenSubdiv's terms): a boundary
+//! vertex moves to (1, 6, 1)/8 of itself and its boundary neighbours, a boundary edge is halved, and a corner of a
+//! single face is rounded like any other boundary vertex.
+
+mod limit;
+mod mask;
+mod normal;
+mod positions;
+mod refinement;
+mod ring;
+#[cfg(test)]
+mod tests;
+mod topology;
+
+pub use limit::{LimitPoint, limit_normal, limit_point, limit_points, limit_position, limit_positions};
+pub use mask::{LimitMask, limit_mask, limit_tangent_masks};
+pub use normal::{face_normal, vertex_normal};
+pub use refinement::{ControlIds, RefineError, Refined, Refinement, VertexParent, refine};
+pub use topology::Level;

@@ -1,0 +1,147 @@
+//! Points of the limit surface at the vertices of a control mesh.
+
+use super::mask::{RingMask, position_mask, tangent_masks};
+use super::ring::{Ring, face_center};
+use crate::mesh::{HalfEdgeId, Mesh, VertexId};
+use glam::DVec3;
+use smallvec::SmallVec;
+
+/// The limit surface at a vertex.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub struct LimitPoint {
+    /// Where the vertex goes.
+    pub position: DVec3,
+    /// Two tangents; see [`limit_tangent_masks`](super::limit_tangent_masks) for what they are. Zero at an isolated
+    /// vertex.
+    pub tangents: [DVec3; 2],
+}
+
+impl LimitPoint {
+    /// The unit normal, or `None` where the tangents do not span a plane.
+    pub fn normal(&self) -> Option<DVec3> {
+        let [first, second] = self.tangents.map(scaled);
+        let cross = first.cross(second);
+        let length = cross.length();
+        (length > PARALLEL * first.length() * second.length()).then(|| cross / length)
+    }
+}
+
+/// Tangents whose angle is below this (radians) are taken for parallel.
+const PARALLEL: f64 = 1e-12;
+
+/// The vector with its largest coordinate made 1, against underflow and overflow of its square; zero stays zero.
+fn scaled(vector: DVec3) -> DVec3 {
+    let size = vector.abs().max_element();
+    if size > 0.0 { vector / size } else { DVec3::ZERO }
+}
+
+/// The point of the limit surface at `v`; an isolated vertex stays where it is.
+///
+/// # Panics
+/// When there is no such vertex.
+pub fn limit_position(mesh: &Mesh, v: VertexId) -> DVec3 {
+    if let Some(ring) = RegularRing::new(mesh, v) {
+        return ring.position();
+    }
+    match Ring::new(mesh, v) {
+        Some(ring) => apply(mesh, &ring, &centers(mesh, &ring), &position_mask(&ring)),
+        None => mesh.position(v),
+    }
+}
+
+/// Position and tangents of the limit surface at `v`.
+///
+/// # Panics
+/// When there is no such vertex.
+pub fn limit_point(mesh: &Mesh, v: VertexId) -> LimitPoint {
+    if let Some(ring) = RegularRing::new(mesh, v) {
+        return LimitPoint { position: ring.position(), tangents: ring.tangents() };
+    }
+    let Some(ring) = Ring::new(mesh, v) else {
+        return LimitPoint { position: mesh.position(v), tangents: [DVec3::ZERO; 2] };
+    };
+    let centers = centers(mesh, &ring);
+    LimitPoint {
+        position: apply(mesh, &ring, &centers, &position_mask(&ring)),
+        tangents: tangent_masks(&ring).map(|mask| apply(mesh, &ring, &centers, &mask)),
+    }
+}
+
+/// The unit normal of the limit surface at `v`, outwards; `None` at an isolated vertex and where the tangents do not
+/// span a plane.
+///
+/// # Panics
+/// When there is no such vertex.
+pub fn limit_normal(mesh: &Mesh, v: VertexId) -> Option<DVec3> {
+    limit_point(mesh, v).normal()
+}
+
+/// [`limit_position`] of every vertex id; a removed vertex keeps the position it had.
+pub fn limit_positions(mesh: &Mesh) -> Vec<DVec3> {
+    let position = |v: VertexId| if mesh.has_vertex(v) { limit_position(mesh, v) } else { mesh.position(v) };
+    (0..mesh.vertex_bound() as u32).map(VertexId).map(position).collect()
+}
+
+/// [`limit_point`] of every vertex id; a removed vertex keeps the position it had and has no tangents.
+pub fn limit_points(mesh: &Mesh) -> Vec<LimitPoint> {
+    let removed = |v| LimitPoint { position: mesh.position(v), tangents: [DVec3::ZERO; 2] };
+    let point = |v: VertexId| if mesh.has_vertex(v) { limit_point(mesh, v) } else { removed(v) };
+    (0..mesh.vertex_bound() as u32).map(VertexId).map(point).collect()
+}
+
+fn centers(mesh: &Mesh, ring: &Ring) -> SmallVec<[DVec3; 16]> {
+    ring.face_edges().iter().map(|&h| face_center(mesh, h)).collect()
+}
+
+fn apply(mesh: &Mesh, ring: &Ring, centers: &[DVec3], mask: &RingMask) -> DVec3 {
+    let edges = ring.edges.iter().zip(&mask.edges).map(|(&h, &w)| w * mesh.position(mesh.target(h)));
+    let faces = centers.iter().zip(&mask.faces).map(|(&center, &w)| w * center);
+    mask.vertex * mesh.position(ring.center) + edges.sum::<DVec3>() + faces.sum::<DVec3>()
+}
+
+/// Four quads round a vertex: most vertices of most meshes, for which the masks are constants.
+struct RegularRing {
+    center: DVec3,
+    /// Ends of the edges, counter-clockwise.
+    edges: [DVec3; 4],
+    /// Opposite corners of the faces, face `i` between edges `i` and `i + 1`.
+    corners: [DVec3; 4],
+}
+
+impl RegularRing {
+    fn new(mesh: &Mesh, v: VertexId) -> Option<Self> {
+        let start = mesh.vertex_half_edge(v)?;
+        let mut ring = Self { center: mesh.position(v), edges: [DVec3::ZERO; 4], corners: [DVec3::ZERO; 4] };
+        let mut h = start;
+        for i in 0..4 {
+            let [second, third, last] = quad_after(mesh, h)?;
+            ring.edges[i] = mesh.position(mesh.source(second));
+            ring.corners[i] = mesh.position(mesh.source(third));
+            h = last.mate();
+            if (h == start) != (i == 3) {
+                return None;
+            }
+        }
+        Some(ring)
+    }
+
+    fn position(&self) -> DVec3 {
+        let edges: DVec3 = self.edges.iter().sum();
+        let corners: DVec3 = self.corners.iter().sum();
+        (16.0 * self.center + 4.0 * edges + corners) / 36.0
+    }
+
+    fn tangents(&self) -> [DVec3; 2] {
+        let [e0, e1, e2, e3] = self.edges;
+        let [f0, f1, f2, f3] = self.corners;
+        [(e0 - e2) / 3.0 + ((f0 + f3) - (f1 + f2)) / 12.0, (e1 - e3) / 3.0 + ((f0 + f1) - (f2 + f3)) / 12.0]
+    }
+}
+
+/// The other three half-edges of the face of `h`, if it is a real face with four.
+fn quad_after(mesh: &Mesh, h: HalfEdgeId) -> Option<[HalfEdgeId; 3]> {
+    let second = mesh.next(h);
+    let third = mesh.next(second);
+    let last = mesh.next(third);
+    (mesh.next(last) == h && !mesh.face(h).is_boundary()).then_some([second, third, last])
+}
