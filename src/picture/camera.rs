@@ -6,6 +6,8 @@ use glam::{DVec2, DVec3};
 const MARGIN: f64 = 0.04;
 /// Coordinates beyond this are not framed: their differences would overflow.
 const LARGEST_COORDINATE: f64 = 1e150;
+/// Extents in view for which the scale is a finite number.
+const HALF_EXTENTS: std::ops::Range<f64> = 1e-290..1e290;
 
 /// A parallel projection. All panels of a figure share one, so that they can be compared.
 #[derive(Clone, Copy, PartialEq, Debug)]
@@ -42,21 +44,20 @@ impl Camera {
             (low, high) = (DVec3::NEG_ONE, DVec3::ONE);
         }
         let middle = (low + high) / 2.0;
-        let mut half_extent = (high - low).truncate() / 2.0 * (1.0 + 2.0 * MARGIN);
-        if half_extent.max_element() <= 0.0 {
-            half_extent = DVec2::ONE;
-        }
-        Self { centre: right * middle.x + up * middle.y + back * middle.z, right, up, back, half_extent }
+        let centre = right * middle.x + up * middle.y + back * middle.z;
+        let half_extent = (high - low).truncate() / 2.0 * (1.0 + 2.0 * MARGIN);
+        Self { centre, right, up, back, half_extent: DVec2::ONE }.showing(half_extent)
     }
 
-    /// The same view of a part that is `factor` times as wide and high. Factors that are not positive and finite
-    /// change nothing.
+    /// The same view of a part that is `factor` times as wide and high. A factor that is not positive and finite, or
+    /// leads out of the numbers of a computer, changes nothing.
     pub fn widened(self, factor: f64) -> Self {
-        if factor > 0.0 && factor.is_finite() {
-            Self { half_extent: self.half_extent * factor, ..self }
-        } else {
-            self
-        }
+        self.showing(self.half_extent * factor)
+    }
+
+    fn showing(self, half_extent: DVec2) -> Self {
+        let usable = half_extent.min_element() >= 0.0 && HALF_EXTENTS.contains(&half_extent.max_element());
+        if usable { Self { half_extent, ..self } } else { self }
     }
 
     /// `direction` in the axes of the picture: right, up, towards the viewer.
@@ -114,7 +115,7 @@ mod tests {
     }
 
     #[test]
-    fn no_input_gives_a_view_that_is_not_finite() {
+    fn every_input_gives_a_finite_view() {
         let bad = [f64::NAN, f64::INFINITY, 1e308, 0.0, -1e308, 1e-310];
         for a in bad {
             for b in bad {

@@ -1,4 +1,4 @@
-//! The layout of a figure: title, pictures side by side, a legend and a caption beneath each.
+//! The layout of a figure: title, pictures side by side, a caption and a legend beneath each.
 
 use super::camera::{Camera, View};
 use super::canvas::{Canvas, SUPERSAMPLING};
@@ -79,12 +79,13 @@ impl Layout {
         let caption =
             figure.panels.iter().take(MAX_SIDE).map(lines).max().unwrap_or(0) as f64 * type_height * 1.2;
         let picture_top = margin + title;
-        let caption_top = height as f64 - margin - caption;
-        let legend_top = caption_top - legend;
+        let legend_top = height as f64 - margin - legend;
+        let gap = if legend > 0.0 { 0.5 * margin } else { 0.0 };
+        let caption_top = legend_top - gap - caption;
         Self {
             unit,
             margin,
-            picture: [picture_width, legend_top - picture_top - 0.5 * margin]
+            picture: [picture_width, caption_top - picture_top - 0.5 * margin]
                 .map(|side| side.max(0.0) as usize),
             picture_top: picture_top as usize,
             legend_top,
@@ -125,11 +126,11 @@ impl Layout {
     }
 }
 
-/// Height of a panel's legend with the space beneath it.
+/// Height of a panel's legend.
 fn legend_height(content: &Content<'_>, unit: f64) -> f64 {
     match content {
-        Content::Scalar { .. } => 66.0 * unit,
-        Content::Cage { edges, displaced, .. } if !edges.is_empty() || !displaced.is_empty() => 54.0 * unit,
+        Content::Scalar { .. } => 62.0 * unit,
+        Content::Cage { edges, displaced, .. } if !edges.is_empty() || !displaced.is_empty() => 50.0 * unit,
         _ => 0.0,
     }
 }

@@ -99,6 +99,8 @@ pub(super) const DISPLACED: [u8; 3] = [22, 150, 62];
 /// Diameter of those discs in pixels.
 pub(super) const DISC_DIAMETER: f64 = 6.0;
 
+/// Width of the plain edges of a coarse cage, in pixels.
+const WIDEST_EDGE: f64 = 1.2;
 const CAGE_FACE: [u8; 3] = [226, 227, 230];
 const CAGE_EDGE: [u8; 3] = [62, 64, 70];
 const SURFACE: [u8; 3] = [214, 217, 223];
@@ -231,13 +233,14 @@ fn cage(
     }
 }
 
-/// Width in pixels of the plain edges: thinner where the cage is dense, or the lines would hide the faces.
+/// Width in pixels of the plain edges: thinner where the cage is dense, or the lines would hide the faces. The upper
+/// quartile of lengths speaks for the large faces; small details such as feet do not thin the lines of all others.
 fn plain_width(segments: &[(DVec3, DVec3)]) -> f64 {
     let mut lengths: Vec<f64> = segments.iter().map(|(a, b)| a.truncate().distance(b.truncate())).collect();
-    let middle = lengths.len() / 2;
-    if lengths.is_empty() {
-        return 1.0;
+    let at = lengths.len() * 3 / 4;
+    if at >= lengths.len() {
+        return WIDEST_EDGE;
     }
-    let (_, median, _) = lengths.select_nth_unstable_by(middle, f64::total_cmp);
-    (*median / SUPERSAMPLING as f64 * 0.09).clamp(0.4, 1.15)
+    let (_, quartile, _) = lengths.select_nth_unstable_by(at, f64::total_cmp);
+    (*quartile / SUPERSAMPLING as f64 * 0.05).clamp(0.5, WIDEST_EDGE)
 }

@@ -3,11 +3,11 @@
 use super::colour::Light;
 
 /// Towards the key light: above, left, in front.
-const KEY: [f32; 3] = [-0.48, 0.62, 0.62];
+const KEY: [f32; 3] = [-0.58, 0.60, 0.55];
 /// Towards the fill light: right, low, in front.
 const FILL: [f32; 3] = [0.80, -0.10, 0.59];
 /// Halfway between the key light and the viewer.
-const HIGHLIGHT: [f32; 3] = [-0.267, 0.344, 0.900];
+const HIGHLIGHT: [f32; 3] = [-0.330, 0.341, 0.880];
 
 /// How a smooth surface is shown.
 #[derive(Clone, Copy, PartialEq, Eq, Default, Debug)]
@@ -40,7 +40,7 @@ pub(super) fn unit(v: [f32; 3]) -> [f32; 3] {
 /// Light of a matt surface of colour `albedo` with unit normal `n`.
 pub(super) fn studio(n: [f32; 3], albedo: Light) -> Light {
     let sky = 0.5 + 0.5 * n[1];
-    let diffuse = 0.10 + 0.12 * sky + 0.80 * dot(n, KEY).max(0.0) + 0.20 * dot(n, FILL).max(0.0);
+    let diffuse = 0.07 + 0.10 * sky + 0.82 * dot(n, KEY).max(0.0) + 0.18 * dot(n, FILL).max(0.0);
     let glance = dot(n, HIGHLIGHT).max(0.0);
     let glance = glance * glance;
     let glance = glance * glance;
@@ -52,7 +52,7 @@ pub(super) fn studio(n: [f32; 3], albedo: Light) -> Light {
 
 /// Light of a coloured surface whose colour must stay readable: lightness falls a little away from the viewer and the key.
 pub(super) fn tinted(n: [f32; 3], colour: Light) -> Light {
-    let level = 0.66 + 0.20 * dot(n, KEY).max(0.0) + 0.16 * n[2].max(0.0);
+    let level = 0.44 + 0.34 * dot(n, KEY).max(0.0) + 0.28 * n[2].max(0.0);
     colour.map(|part| part * level)
 }
 

@@ -91,7 +91,9 @@ impl Type {
                 let upper = at(i, j) * (1.0 - fx) + at(i + 1, j) * fx;
                 let lower = at(i, j + 1) * (1.0 - fx) + at(i + 1, j + 1) * fx;
                 let coverage = upper * (1.0 - fy) + lower * fy;
-                image.blend(column, row, self.colour, coverage.round() as u8);
+                // Enlarging softens the rims; raising the contrast by as much brings them back.
+                let crisp = 127.5 + (coverage - 127.5) * self.scale().max(1.0);
+                image.blend(column, row, self.colour, crisp.round() as u8);
             }
         }
     }
