@@ -35,7 +35,7 @@ pub fn inspect(source: &Source) -> Inspection {
     }
     count_sets(polygons, &mut inspection);
     measure_vertices(source, &topology, &mut inspection);
-    measure_faces(source, &mut inspection);
+    measure_faces(source, &topology, &mut inspection);
     measure_components(source, &topology, &mut inspection);
     inspection
 }
@@ -129,16 +129,17 @@ fn pairs(
         .collect()
 }
 
-fn measure_faces(source: &Source, inspection: &mut Inspection) {
+fn measure_faces(source: &Source, topology: &Topology, inspection: &mut Inspection) {
     let polygons = &source.polygons;
-    let position = |vertex: u32| polygons.positions.get(vertex as usize).copied().unwrap_or_default();
     for (face, vertices) in polygons.faces().enumerate() {
-        let Some(&first) = vertices.first() else { continue };
-        let origin = position(first);
+        if !topology.sound[face] {
+            continue;
+        }
+        let origin = polygons.positions[vertices[0] as usize];
         let (mut area, mut longest) = (DVec3::ZERO, 0.0f64);
         for (i, &a) in vertices.iter().enumerate() {
             let b = vertices[if i + 1 == vertices.len() { 0 } else { i + 1 }];
-            let [a, b] = [a, b].map(|vertex| position(vertex) - origin);
+            let [a, b] = [a, b].map(|vertex| polygons.positions[vertex as usize] - origin);
             area += a.cross(b) / 2.0;
             longest = longest.max(a.distance(b));
         }

@@ -40,7 +40,7 @@ pub struct Inspection {
     pub coincident_vertices: Vec<(u32, u32)>,
     /// Closed components whose faces look inwards (negative volume), as indices into `components`.
     pub inside_out: Vec<usize>,
-    /// Faces whose area is below 1e-12 of the square of their longest side.
+    /// Faces whose area is below 1e-12 of the square of their longest side; those that are defects are not counted.
     pub zero_area_faces: Vec<u32>,
     /// Number of crease edges.
     pub creases: usize,
