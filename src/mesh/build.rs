@@ -114,39 +114,33 @@ impl Mesh {
         }
     }
 
+    /// Vertices whose half-edges form several rings.
     fn separate_fans(&self) -> Vec<Defect> {
-        let mut outgoing = vec![0u32; self.vertices.len()];
-        for half_edge in &self.half_edges {
-            outgoing[half_edge.source as usize] += 1;
+        let ring = |start: u32| {
+            std::iter::successors(Some(start), move |&h| {
+                let next = self.half_edges[(h ^ 1) as usize].next;
+                (next != start).then_some(next)
+            })
+        };
+        let on_first_rings: usize =
+            self.vertices.iter().filter(|&&h| h != NONE).map(|&h| ring(h).count()).sum();
+        if on_first_rings == self.half_edges.len() {
+            return Vec::new();
         }
-        let mut defects = Vec::new();
-        for (vertex, &total) in outgoing.iter().enumerate() {
-            if total == 0 {
-                continue;
+        // Rare: walk the ring of every half-edge that was not met on an earlier one.
+        let mut seen = vec![false; self.half_edges.len()];
+        let mut fans = vec![0u32; self.vertices.len()];
+        for id in 0..self.half_edges.len() as u32 {
+            if !seen[id as usize] {
+                fans[self.half_edges[id as usize].source as usize] += 1;
+                ring(id).for_each(|h| seen[h as usize] = true);
             }
-            let ring = |start: u32| {
-                std::iter::successors(Some(start), move |&h| {
-                    let next = self.half_edges[(h ^ 1) as usize].next;
-                    (next != start).then_some(next)
-                })
-            };
-            let start = self.vertices[vertex];
-            if ring(start).count() as u32 == total {
-                continue;
-            }
-            // Rare: count the fans by walking each outgoing half-edge's ring once.
-            let mut seen: Vec<u32> = ring(start).collect();
-            let mut fans = 1;
-            for id in 0..self.half_edges.len() as u32 {
-                if self.half_edges[id as usize].source as usize == vertex && !seen.contains(&id) {
-                    fans += 1;
-                    seen.extend(ring(id));
-                }
-            }
-            let vertex = vertex as u32;
-            defects.push(Defect::SeparateFans { vertex, fans });
         }
-        defects
+        (0u32..)
+            .zip(fans)
+            .filter(|&(_, fans)| fans > 1)
+            .map(|(vertex, fans)| Defect::SeparateFans { vertex, fans })
+            .collect()
     }
 
     /// Takes over what travels with the faces and corners.
@@ -163,8 +157,9 @@ impl Mesh {
             self.face_sets = polygons.face_sets.clone();
         }
         self.material_libraries = polygons.material_libraries.clone();
-        for &(a, b, sharpness) in &polygons.creases {
-            if let Some(h) = self.find_half_edge(super::VertexId(a), super::VertexId(b)) {
+        let ends: Vec<(u32, u32)> = polygons.creases.iter().map(|&(a, b, _)| (a, b)).collect();
+        for (edge, &(_, _, sharpness)) in self.find_edges(&ends).into_iter().zip(&polygons.creases) {
+            if let Some(h) = edge {
                 self.set_edge_sharpness(h, sharpness);
             }
         }

@@ -1,9 +1,11 @@
 //! What is wrong with a mesh, element by element.
 
+use serde::Serialize;
 use std::fmt;
 
 /// A thing the half-edge kernel cannot hold. Numbers are 0-based.
-#[derive(Clone, PartialEq, Eq, PartialOrd, Ord, Debug)]
+#[derive(Clone, PartialEq, Eq, PartialOrd, Ord, Debug, Serialize)]
+#[serde(rename_all = "kebab-case", tag = "kind")]
 pub enum Defect {
     /// The sizes of the faces do not add up to the number of face vertices.
     SizeMismatch {
@@ -64,6 +66,32 @@ pub enum Defect {
         /// How many fans.
         fans: u32,
     },
+}
+
+impl Defect {
+    /// The same defect with the numbers that `vertex` and `face` give; each is called in the order of the fields.
+    pub fn renumbered(self, vertex: impl Fn(u32) -> u32, mut face: impl FnMut(u32) -> u32) -> Self {
+        let ends = |edge: (u32, u32)| (vertex(edge.0), vertex(edge.1));
+        match self {
+            Self::SizeMismatch { .. } | Self::TooLarge { .. } => self,
+            Self::TooFewVertices { face: f, size } => Self::TooFewVertices { face: face(f), size },
+            Self::VertexOutOfRange { face: f, vertex: v } => {
+                Self::VertexOutOfRange { face: face(f), vertex: vertex(v) }
+            }
+            Self::RepeatedVertex { face: f, vertex: v } => {
+                Self::RepeatedVertex { face: face(f), vertex: vertex(v) }
+            }
+            Self::NotFinite { vertex: v } => Self::NotFinite { vertex: vertex(v) },
+            Self::EdgeWithManyFaces { edge, faces } => {
+                Self::EdgeWithManyFaces { edge: ends(edge), faces: faces.into_iter().map(face).collect() }
+            }
+            Self::InconsistentOrientation { edge, faces } => Self::InconsistentOrientation {
+                edge: ends(edge),
+                faces: faces.into_iter().map(face).collect(),
+            },
+            Self::SeparateFans { vertex: v, fans } => Self::SeparateFans { vertex: vertex(v), fans },
+        }
+    }
 }
 
 impl fmt::Display for Defect {

@@ -89,6 +89,30 @@ impl Mesh {
         self.outgoing(a).find(|&h| self.target(h) == b)
     }
 
+    /// [`find_half_edge`](Self::find_half_edge) for many pairs of vertices: walks round each vertex once, so that a
+    /// pole with many pairs does not cost its square.
+    pub fn find_edges(&self, pairs: &[(u32, u32)]) -> Vec<Option<HalfEdgeId>> {
+        let mut order: Vec<(u32, u32, usize)> =
+            pairs.iter().enumerate().map(|(i, &(a, b))| (a.min(b), a.max(b), i)).collect();
+        order.sort_unstable();
+        let mut found = vec![None; pairs.len()];
+        for group in order.chunk_by(|x, y| x.0 == y.0) {
+            let low = VertexId(group[0].0);
+            if !self.has_vertex(low) {
+                continue;
+            }
+            for h in self.outgoing(low) {
+                let target = self.target(h).0;
+                let first = group.partition_point(|pair| pair.1 < target);
+                for pair in group[first..].iter().take_while(|pair| pair.1 == target) {
+                    let forwards = pairs[pair.2].0 == low.0;
+                    found[pair.2] = Some(if forwards { h } else { h.mate() });
+                }
+            }
+        }
+        found
+    }
+
     /// The point at `t` in [0, 1] along `h`.
     pub fn point_along(&self, h: HalfEdgeId, t: f64) -> DVec3 {
         self.position(self.source(h)).lerp(self.position(self.target(h)), t)

@@ -1,0 +1,413 @@
+//! Reads OBJ files statement by statement, in one pass over the bytes.
+
+use super::sets::{SetStatement, Sets};
+use crate::io::error::ImportError;
+use crate::io::report::{IgnoredKind, ImportReport};
+use crate::io::source::{Lines, Source};
+use crate::io::text::{Cursor, Fault, Place, shown};
+use crate::io::Limits;
+use crate::mesh::Polygons;
+use glam::{DVec2, DVec3};
+
+pub(super) type Result<T> = std::result::Result<T, Box<Fault>>;
+
+/// Stands for "no texture coordinate" in `face_texcoords`.
+const NO_TEXCOORD: u32 = u32::MAX;
+
+/// Bytes of a file per vertex or face, from below for usual files: what is reserved in advance.
+const BYTES_PER_ELEMENT: usize = 64;
+
+/// Reads a whole file. `name` is used in messages.
+pub(in crate::io) fn read(
+    name: &str,
+    bytes: &[u8],
+    limits: &Limits,
+) -> std::result::Result<Source, ImportError> {
+    let mut reader = Reader::new(bytes, limits);
+    match reader.statements().and_then(|()| reader.finish()) {
+        Ok(()) => Ok(Source::new(name, reader.polygons, reader.report, reader.lines)),
+        Err(fault) => Err(fault.into_error(name)),
+    }
+}
+
+pub(super) struct Reader<'a> {
+    pub(super) text: Cursor<'a>,
+    limits: &'a Limits,
+    pub(super) polygons: Polygons,
+    pub(super) report: ImportReport,
+    pub(super) lines: Lines,
+    sets: Sets,
+    /// True once a statement of the format was seen.
+    understood: bool,
+    /// The largest vertex number (0-based) that a face or a tag named, and where a tag named its largest.
+    largest_vertex: Option<u32>,
+    largest_tag_vertex: Option<(u32, Place)>,
+}
+
+/// One `v/vt/vn` of a face.
+struct Corner {
+    vertex: u32,
+    texcoord: u32,
+}
+
+impl<'a> Reader<'a> {
+    fn new(bytes: &'a [u8], limits: &'a Limits) -> Self {
+        let mut reader = Self {
+            text: Cursor::new(bytes),
+            limits,
+            polygons: Polygons::default(),
+            report: ImportReport::default(),
+            lines: Lines::default(),
+            sets: Sets::default(),
+            understood: false,
+            largest_vertex: None,
+            largest_tag_vertex: None,
+        };
+        let expected = bytes.len() / BYTES_PER_ELEMENT;
+        reader.polygons.positions.reserve(expected);
+        reader.lines.vertices.reserve(expected);
+        reader.polygons.face_sizes.reserve(expected);
+        reader.polygons.face_vertices.reserve(4 * expected);
+        reader.lines.faces.reserve(expected);
+        reader
+    }
+
+    /// An error at the present place.
+    pub(super) fn fault(&self, message: impl Into<String>, remedy: &'static str) -> Box<Fault> {
+        fault_at(self.text.place(), message, remedy)
+    }
+
+    pub(super) fn note_tag_vertex(&mut self, vertex: u32, place: Place) {
+        if self.largest_tag_vertex.is_none_or(|(largest, _)| vertex > largest) {
+            self.largest_tag_vertex = Some((vertex, place));
+        }
+    }
+
+    fn statements(&mut self) -> Result<()> {
+        loop {
+            if self.text.next_token_on_line() {
+                self.statement()?;
+            }
+            if !self.text.next_line() {
+                return Ok(());
+            }
+        }
+    }
+
+    fn statement(&mut self) -> Result<()> {
+        let place = self.text.place();
+        let line = place.line;
+        let keyword = self.text.token();
+        let ignored = match keyword {
+            b"v" => return self.vertex(line),
+            b"f" | b"fo" => return self.face(line),
+            b"vt" => return self.texcoord(line),
+            b"vn" => IgnoredKind::Normals,
+            b"g" => return self.set(SetStatement::Group, line),
+            b"o" => return self.set(SetStatement::Object, line),
+            b"usemtl" => return self.set(SetStatement::Material, line),
+            b"s" => return self.set(SetStatement::Smoothing, line),
+            b"mtllib" => return self.material_library(line),
+            b"t" => return self.tag(line),
+            b"p" => IgnoredKind::Points,
+            b"l" => IgnoredKind::Lines,
+            b"vp" | b"cstype" | b"deg" | b"bmat" | b"step" | b"curv" | b"curv2" | b"surf" | b"parm"
+            | b"trim" | b"hole" | b"scrv" | b"sp" | b"end" | b"con" | b"cdc" | b"cdp" | b"bzp" | b"bsp"
+            | b"res" => IgnoredKind::FreeFormGeometry,
+            b"mg" | b"bevel" | b"c_interp" | b"d_interp" | b"lod" | b"shadow_obj" | b"trace_obj"
+            | b"ctech" | b"stech" | b"usemap" | b"maplib" => IgnoredKind::DisplaySettings,
+            _ => {
+                self.report.ignore(IgnoredKind::UnknownKeywords, line, || shown(keyword));
+                return Ok(());
+            }
+        };
+        self.understood = true;
+        self.report.ignore(ignored, line, || shown(keyword));
+        Ok(())
+    }
+
+    fn vertex(&mut self, line: u32) -> Result<()> {
+        self.understood = true;
+        if self.polygons.positions.len() as u64 >= self.limits.max_vertices {
+            let message = format!("more than {} vertices", self.limits.max_vertices);
+            return Err(
+                self.fault(message, "raise the limit for vertices if the file is meant to be this large")
+            );
+        }
+        let x = self.coordinate()?;
+        let y = self.coordinate()?;
+        let z = self.coordinate()?;
+        self.polygons.positions.push(DVec3::new(x, y, z));
+        self.lines.vertices.push(line);
+        if self.text.next_token_on_line() {
+            self.behind_coordinates(line);
+        }
+        Ok(())
+    }
+
+    fn coordinate(&mut self) -> Result<f64> {
+        const REMEDY: &str = "write 'v x y z' with three finite numbers";
+        if !self.text.next_token_on_line() {
+            return Err(self.fault("a vertex with fewer than three coordinates", REMEDY));
+        }
+        let place = self.text.place();
+        match self.text.number() {
+            Ok(value) if value.is_finite() => Ok(value),
+            Ok(value) => {
+                Err(fault_at(place, format!("the coordinate {value} is not a finite number"), REMEDY))
+            }
+            Err(token) => Err(fault_at(place, format!("'{}' is not a number", shown(token)), REMEDY)),
+        }
+    }
+
+    /// Weight (1 more number), colour (3), both (4) or what else stands behind the coordinates.
+    fn behind_coordinates(&mut self, line: u32) {
+        let mut count = 0;
+        let mut first = None;
+        while self.text.next_token_on_line() {
+            let number = self.text.number();
+            if count == 0 {
+                first = number.ok();
+            }
+            count += 1;
+        }
+        if matches!(count, 1 | 4) && first != Some(1.0) {
+            self.report.ignore(IgnoredKind::VertexWeights, line, || "v".into());
+        }
+        match count {
+            1 => {}
+            3 | 4 => self.report.ignore(IgnoredKind::VertexColours, line, || "v".into()),
+            _ => self.report.ignore(IgnoredKind::ExtraNumbers, line, || "v".into()),
+        }
+    }
+
+    fn texcoord(&mut self, line: u32) -> Result<()> {
+        const REMEDY: &str = "write 'vt u v' with finite numbers";
+        self.understood = true;
+        if self.polygons.texcoords.len() as u64 >= self.limits.max_vertices {
+            let message = format!("more than {} texture coordinates", self.limits.max_vertices);
+            return Err(
+                self.fault(message, "raise the limit for vertices if the file is meant to be this large")
+            );
+        }
+        let mut values = [0.0; 3];
+        for (i, value) in values.iter_mut().enumerate() {
+            if !self.text.next_token_on_line() {
+                if i == 0 {
+                    return Err(self.fault("a texture coordinate without a number", REMEDY));
+                }
+                break;
+            }
+            let place = self.text.place();
+            *value = match self.text.number() {
+                Ok(number) if number.is_finite() => number,
+                Ok(_) => {
+                    return Err(fault_at(place, "a texture coordinate that is not a finite number", REMEDY));
+                }
+                Err(token) => {
+                    return Err(fault_at(place, format!("'{}' is not a number", shown(token)), REMEDY));
+                }
+            };
+        }
+        if values[2] != 0.0 {
+            self.report.ignore(IgnoredKind::ThirdTextureCoordinate, line, || "vt".into());
+        }
+        self.polygons.texcoords.push(DVec2::new(values[0], values[1]));
+        Ok(())
+    }
+
+    fn face(&mut self, line: u32) -> Result<()> {
+        self.understood = true;
+        if self.polygons.face_sizes.len() as u64 >= self.limits.max_faces {
+            let message = format!("more than {} faces", self.limits.max_faces);
+            return Err(
+                self.fault(message, "raise the limit for faces if the file is meant to be this large")
+            );
+        }
+        let mut size: u32 = 0;
+        while self.text.next_token_on_line() {
+            if u64::from(size) >= self.limits.max_arity {
+                let message = format!("a face with more than {} vertices", self.limits.max_arity);
+                return Err(self.fault(message, "split the face, or raise the limit for face sizes"));
+            }
+            let corner = self.corner(line)?;
+            if corner.texcoord != NO_TEXCOORD && self.polygons.face_texcoords.is_empty() {
+                // The first texture coordinate of all: the corners before it have none.
+                self.polygons.face_texcoords.resize(self.polygons.face_vertices.len(), NO_TEXCOORD);
+            }
+            if corner.texcoord != NO_TEXCOORD || !self.polygons.face_texcoords.is_empty() {
+                self.polygons.face_texcoords.push(corner.texcoord);
+            }
+            self.polygons.face_vertices.push(corner.vertex);
+            self.largest_vertex = self.largest_vertex.max(Some(corner.vertex));
+            size += 1;
+        }
+        self.polygons.face_sizes.push(size);
+        self.lines.faces.push(line);
+        let set = self.sets.index(&mut self.polygons);
+        self.polygons.face_sets.push(set);
+        Ok(())
+    }
+
+    fn corner(&mut self, line: u32) -> Result<Corner> {
+        let place = self.text.place();
+        let start = self.text.offset();
+        let vertex = self.text.integer();
+        let (mut texcoord, mut well_formed) = (None, vertex.is_some());
+        // The numbers of texture coordinate and normal are optional, and so are the slashes.
+        for part in 0..2 {
+            if self.text.peek() != Some(b'/') {
+                break;
+            }
+            self.text.advance();
+            let number = self.text.integer();
+            if part == 0 {
+                texcoord = number;
+            }
+        }
+        well_formed &= self.text.is_token_end();
+        if !well_formed {
+            self.text.token();
+            let token = shown(self.text.since(start));
+            let remedy = "write each corner as v, v/vt, v//vn or v/vt/vn";
+            return Err(fault_at(place, format!("'{token}' is not a corner of a face"), remedy));
+        }
+        let vertex = self.vertex_index(vertex.unwrap_or(0), place, start)?;
+        Ok(Corner {
+            vertex,
+            texcoord: texcoord.map_or(NO_TEXCOORD, |number| self.texcoord_index(number, line)),
+        })
+    }
+
+    /// The 0-based index of a vertex number: from 1, or from -1 backwards. Whether a positive one exists is known
+    /// only at the end of the file.
+    fn vertex_index(&self, number: i64, place: Place, start: usize) -> Result<u32> {
+        let count = self.polygons.positions.len() as i64;
+        let index = if number > 0 { number - 1 } else { count + number };
+        if number != 0 && index >= 0 && (index as u64) < self.limits.max_vertices {
+            return u32::try_from(index)
+                .map_err(|_| fault_at(place, "a vertex number beyond 2^32", RANGE_REMEDY));
+        }
+        let text = shown(self.text.since(start));
+        let number = text.split('/').next().unwrap_or_default();
+        let message = match index {
+            _ if number.trim_start_matches(['-', '+']).bytes().all(|digit| digit == b'0') => {
+                "a face names vertex 0, but OBJ files count vertices from 1".to_string()
+            }
+            ..0 => format!("a face names vertex {number}, but only {count} vertices come before it"),
+            _ => format!("a face names vertex {number}, but the file has only {count} vertices up to here"),
+        };
+        Err(fault_at(place, message, RANGE_REMEDY))
+    }
+
+    /// The 0-based index of a texture coordinate number, `NO_TEXCOORD` when it cannot exist.
+    fn texcoord_index(&mut self, number: i64, line: u32) -> u32 {
+        let count = self.polygons.texcoords.len() as i64;
+        let index = if number > 0 { number - 1 } else { count + number };
+        match u32::try_from(index) {
+            Ok(index) if number != 0 && index < NO_TEXCOORD => index,
+            _ => {
+                self.report.ignore(IgnoredKind::MissingTextureCoordinate, line, || number.to_string());
+                NO_TEXCOORD
+            }
+        }
+    }
+
+    fn name(&mut self, line: u32) -> String {
+        let words = self.text.words();
+        String::from_utf8(words).unwrap_or_else(|error| {
+            let name = String::from_utf8_lossy(error.as_bytes()).into_owned();
+            self.report.ignore(IgnoredKind::NamesNotUtf8, line, || shown(name.as_bytes()));
+            name
+        })
+    }
+
+    fn set(&mut self, statement: SetStatement, line: u32) -> Result<()> {
+        self.understood = true;
+        let name = self.name(line);
+        if let Some(unused) = self.sets.set(statement, name, line) {
+            self.report.ignore(IgnoredKind::NamesWithoutFaces, unused, || format!("{statement:?}"));
+        }
+        Ok(())
+    }
+
+    fn material_library(&mut self, line: u32) -> Result<()> {
+        self.understood = true;
+        let name = self.name(line);
+        if !name.is_empty() && !self.polygons.material_libraries.contains(&name) {
+            self.polygons.material_libraries.push(name);
+        }
+        Ok(())
+    }
+
+    /// Checks what can be known only at the end.
+    fn finish(&mut self) -> Result<()> {
+        if !self.understood
+            && let Some(unknown) = self.report.ignored.first()
+        {
+            let place = Place { line: unknown.first_line, column: 1 };
+            let message = format!("'{}' is no OBJ statement, and the file has none", unknown.example);
+            return Err(fault_at(place, message, "check that this is an OBJ file"));
+        }
+        let count = self.polygons.positions.len();
+        if self.largest_vertex.is_some_and(|vertex| vertex as usize >= count) {
+            return Err(self.first_out_of_range());
+        }
+        if let Some((vertex, place)) = self.largest_tag_vertex.filter(|&(vertex, _)| vertex as usize >= count)
+        {
+            let message =
+                format!("a tag names vertex {vertex}, but the file has {count} (tags count from 0)");
+            return Err(fault_at(place, message, RANGE_REMEDY));
+        }
+        for line in self.sets.unused() {
+            self.report.ignore(IgnoredKind::NamesWithoutFaces, line, || "at the end".into());
+        }
+        if self.polygons.sets.iter().all(|set| *set == Default::default()) {
+            self.polygons.sets.clear();
+            self.polygons.face_sets.clear();
+        }
+        self.drop_missing_texcoords();
+        Ok(())
+    }
+
+    fn first_out_of_range(&self) -> Box<Fault> {
+        let count = self.polygons.positions.len();
+        for (face, &line) in self.polygons.faces().zip(&self.lines.faces) {
+            if let Some(corner) = face.iter().position(|&vertex| vertex as usize >= count) {
+                let number = u64::from(face[corner]) + 1;
+                let message = format!(
+                    "corner {} of the face names vertex {number}, but the file has only {count} vertices",
+                    corner + 1
+                );
+                return fault_at(Place { line, column: 1 }, message, RANGE_REMEDY);
+            }
+        }
+        self.fault("a face names a vertex that does not exist", RANGE_REMEDY)
+    }
+
+    /// Corners may name texture coordinates that come later in the file, but not ones that never come.
+    fn drop_missing_texcoords(&mut self) {
+        let count = self.polygons.texcoords.len();
+        let mut corner = 0;
+        for (&size, &line) in self.polygons.face_sizes.iter().zip(&self.lines.faces) {
+            let end = corner + size as usize;
+            for texcoord in self.polygons.face_texcoords.get_mut(corner..end).unwrap_or_default() {
+                if *texcoord != NO_TEXCOORD && *texcoord as usize >= count {
+                    let number = u64::from(*texcoord) + 1;
+                    self.report.ignore(IgnoredKind::MissingTextureCoordinate, line, || number.to_string());
+                    *texcoord = NO_TEXCOORD;
+                }
+            }
+            corner = end;
+        }
+        if self.polygons.face_texcoords.iter().all(|&texcoord| texcoord == NO_TEXCOORD) {
+            self.polygons.face_texcoords.clear();
+        }
+    }
+}
+
+const RANGE_REMEDY: &str = "correct the number or add the missing vertex";
+
+fn fault_at(place: Place, message: impl Into<String>, remedy: &'static str) -> Box<Fault> {
+    Box::new(Fault { place, message: message.into(), remedy })
+}

@@ -1,0 +1,60 @@
+//! Which groups, object, material and smoothing group the next face belongs to.
+
+use crate::mesh::{FaceSet, Polygons};
+use rustc_hash::FxHashMap;
+
+/// The statements that change what the next face belongs to.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub(super) enum SetStatement {
+    Group,
+    Object,
+    Material,
+    Smoothing,
+}
+
+/// Follows the statements and hands out the index of the present set to each face.
+#[derive(Default)]
+pub(super) struct Sets {
+    present: FaceSet,
+    /// Index of `present`, once a face asked for it.
+    index: Option<u32>,
+    known: FxHashMap<FaceSet, u32>,
+    /// Lines of the statements that no face followed yet.
+    waiting: [Option<u32>; 4],
+}
+
+impl Sets {
+    /// Takes a statement. Gives the line of the statement it replaces when no face ever used that one.
+    pub(super) fn set(&mut self, statement: SetStatement, name: String, line: u32) -> Option<u32> {
+        let named = (!name.is_empty()).then_some(name);
+        match statement {
+            SetStatement::Group => {
+                self.present.groups = named.iter().flat_map(|n| n.split(' ')).map(str::to_string).collect();
+            }
+            SetStatement::Object => self.present.object = named,
+            SetStatement::Material => self.present.material = named,
+            SetStatement::Smoothing => self.present.smoothing = named,
+        }
+        self.index = None;
+        self.waiting[statement as usize].replace(line)
+    }
+
+    /// The set of the next face, as an index into `polygons.sets`.
+    pub(super) fn index(&mut self, polygons: &mut Polygons) -> u32 {
+        if let Some(index) = self.index {
+            return index;
+        }
+        self.waiting = [None; 4];
+        let index = *self.known.entry(self.present.clone()).or_insert_with_key(|set| {
+            polygons.sets.push(set.clone());
+            (polygons.sets.len() - 1) as u32
+        });
+        self.index = Some(index);
+        index
+    }
+
+    /// Lines of the statements that no face followed.
+    pub(super) fn unused(&self) -> impl Iterator<Item = u32> {
+        self.waiting.iter().copied().flatten()
+    }
+}

@@ -1,0 +1,26 @@
+//! What several integration tests share.
+
+use std::path::PathBuf;
+
+/// The folder of test meshes beside the project; `None`, and a line on standard output, where it is absent.
+pub fn shared_data() -> Option<PathBuf> {
+    let folder = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../shared/data");
+    if folder.is_dir() {
+        return Some(folder);
+    }
+    println!("skipped: ../shared is absent");
+    None
+}
+
+/// The content of a test mesh, unpacked when it ends with `.gz`.
+#[allow(dead_code, reason = "not every test that shares this module reads files")]
+pub fn content(path: &std::path::Path) -> Vec<u8> {
+    let bytes = std::fs::read(path).expect("a file of the catalogue is readable");
+    if path.extension().is_none_or(|extension| extension != "gz") {
+        return bytes;
+    }
+    let mut unpacked = Vec::new();
+    std::io::Read::read_to_end(&mut flate2::read::GzDecoder::new(bytes.as_slice()), &mut unpacked)
+        .expect("a file of the catalogue unpacks");
+    unpacked
+}
