@@ -1,1 +1,29 @@
-//! The C ABI.
+//! The C ABI: one file per handle, in the order of the sections of `include/welt.h`, which is generated from here.
+//!
+//! Every exported function does its work inside [`boundary`], so that no panic crosses into C, and takes its
+//! arguments through [`arguments`], which checks every pointer and count. These two files and the exported functions
+//! hold all `unsafe` code of the crate. What C readers need to know stands in the comments of the exported functions.
+
+// The comments of exported functions become the header; its first page says what callers answer for.
+#![allow(clippy::missing_safety_doc)]
+
+mod arguments;
+mod boundary;
+mod error;
+mod failure;
+mod job;
+mod limit;
+mod mesh;
+mod refinement;
+mod status;
+#[cfg(test)]
+mod tests;
+mod version;
+
+pub use error::*;
+pub use job::*;
+pub use limit::*;
+pub use mesh::*;
+pub use refinement::*;
+pub use status::*;
+pub use version::*;

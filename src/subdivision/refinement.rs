@@ -15,7 +15,16 @@ pub enum RefineError {
         /// Half-edges it would have.
         elements: u64,
     },
+    /// More levels than even one triangle could be refined to.
+    #[error("level {depth} is too deep; the deepest is {DEEPEST}")]
+    TooDeep {
+        /// The level asked for.
+        depth: usize,
+    },
 }
+
+/// At this level the children of a single triangle outnumber 31-bit ids.
+const DEEPEST: usize = 16;
 
 /// Elements of the mesh in the order in which level 0 numbers them: ascending ids, removed elements left out. On a
 /// compact mesh element `i` is therefore the one with id `i`.
@@ -54,7 +63,7 @@ impl Refinement {
     /// Levels 0 to `depth` of `mesh`. Memory: about 45 bytes per face of every level, 30 on the last.
     ///
     /// # Errors
-    /// [`RefineError::TooLarge`], before any level is made.
+    /// [`RefineError`], before any level is made.
     pub fn new(mesh: &Mesh, depth: usize) -> Result<Self, RefineError> {
         let ids = ControlIds {
             vertices: mesh.vertices().collect(),
@@ -175,6 +184,9 @@ pub fn refine(mesh: &Mesh, levels: usize) -> Result<Refined, RefineError> {
 
 /// Half-edges are the most numerous elements; a level has twice those of the last and two for each of its corners.
 fn check_size(control: &Level, depth: usize) -> Result<(), RefineError> {
+    if depth > DEEPEST {
+        return Err(RefineError::TooDeep { depth });
+    }
     let mut corners = control.corner_vertices.len() as u64;
     let mut edges = u64::from(control.edge_count);
     for level in 1..=depth {
@@ -182,9 +194,6 @@ fn check_size(control: &Level, depth: usize) -> Result<(), RefineError> {
         corners *= 4;
         if 2 * edges > u64::from(u32::MAX >> 1) {
             return Err(RefineError::TooLarge { level, elements: 2 * edges });
-        }
-        if edges == 0 {
-            break;
         }
     }
     Ok(())

@@ -187,6 +187,7 @@ fn a_level_that_cannot_be_numbered_is_refused() {
 fn small_and_degenerate_meshes() {
     let empty = Mesh::default();
     assert!(refine(&empty, 3).unwrap().positions.is_empty());
+    assert!(refine(&empty, usize::MAX).is_err());
     let triangle = mesh(vec![DVec3::ZERO, DVec3::X, DVec3::Y], &[&[0, 1, 2]]);
     assert_close(limit_normal(&triangle, VertexId(0)).unwrap(), DVec3::Z);
     let flat = mesh(vec![DVec3::ZERO; 4], &[&[0, 1, 2, 3]]);

@@ -1,0 +1,510 @@
+/* welt: procedural features on Catmull-Clark control meshes. Generated from src/ffi: do not edit.
+ *
+ * Linking: the shared library is libwelt.so (SONAME libwelt.so.0); the static one is libwelt.a.
+ *
+ * Handles (welt_mesh, welt_job, ...) are opaque. Each kind has one function that frees it, which accepts NULL. A handle is
+ * used only between the call that made it and the call that frees it.
+ *
+ * Status: functions that can fail return WELT_OK or one of WELT_ERROR_*, which are negative; numbers are never reused. Their
+ * last parameter, error, may be NULL. Otherwise it receives NULL on success and an error on failure, which the caller
+ * frees with welt_error_free; what it held before is overwritten without being freed. Results are written only on success.
+ *
+ * Threads: there is no global state. Calls on different handles may run at the same time. A parameter "const welt_x *" is
+ * only read: any number of threads may pass the same handle to such parameters at the same time. A parameter
+ * "welt_x *" is changed: no other thread may use the handle meanwhile. A welt_job may be used by all threads at any time.
+ *
+ * Memory: arrays that are passed in are copied. Pointers that are given out belong to the library, for as long as the
+ * function says. Buffers belong to the caller; one that is too small is an error (WELT_ERROR_BUFFER) and is not written to.
+ *
+ * Numbers: indices are 0-based; coordinates are doubles in the unit of the caller; text is UTF-8.
+ */
+
+#ifndef WELT_H
+#define WELT_H
+
+
+#include <stddef.h>
+#include <stdint.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* What stands before every function: a program may define it, for example as __declspec(dllimport). */
+#ifndef WELT_API
+#define WELT_API
+#endif
+
+
+/*
+ Major version of this header.
+ */
+#define WELT_VERSION_MAJOR 0
+
+/*
+ Minor version of this header.
+ */
+#define WELT_VERSION_MINOR 1
+
+/*
+ Patch version of this header.
+ */
+#define WELT_VERSION_PATCH 0
+
+/*
+ Version of this header as one number, for comparisons: major * 65536 + minor * 256 + patch.
+ */
+#define WELT_VERSION 256
+
+/*
+ Version of the binary interface, the number in the name of the shared library. It grows only when a program that was
+ compiled before would no longer run.
+ */
+#define WELT_ABI_VERSION 0
+
+/*
+ Success.
+ */
+#define WELT_OK 0
+
+/*
+ An argument is NULL that must not be, or has a value outside its range. Nothing was changed.
+ */
+#define WELT_ERROR_ARGUMENT -1
+
+/*
+ The polygons are no surface: the places of the error list every defect.
+ */
+#define WELT_ERROR_MESH -2
+
+/*
+ The job was cancelled. What the call was changing is as it was before.
+ */
+#define WELT_ERROR_CANCELLED -3
+
+/*
+ The result would have more elements than 31 bits can number.
+ */
+#define WELT_ERROR_TOO_LARGE -4
+
+/*
+ A buffer is too small; the message says how much room is needed.
+ */
+#define WELT_ERROR_BUFFER -5
+
+/*
+ The handle was left half changed by a call that returned WELT_ERROR_INTERNAL. It can only be freed.
+ */
+#define WELT_ERROR_POISONED -6
+
+/*
+ A defect of the library; the message says where. Please report it.
+ */
+#define WELT_ERROR_INTERNAL -7
+
+/*
+ The place is the input as a whole.
+ */
+#define WELT_PLACE_WHOLE 0
+
+/*
+ The place is a vertex; its first id is the vertex.
+ */
+#define WELT_PLACE_VERTEX 1
+
+/*
+ The place is an edge; its ids are the vertices of the edge.
+ */
+#define WELT_PLACE_EDGE 2
+
+/*
+ The place is a face; its first id is the face.
+ */
+#define WELT_PLACE_FACE 3
+
+/*
+ The id that stands for "none".
+ */
+#define WELT_NONE 4294967295
+
+/*
+ The vertex stands for a vertex of the level before.
+ */
+#define WELT_PARENT_VERTEX 0
+
+/*
+ The vertex stands for an edge of the level before.
+ */
+#define WELT_PARENT_EDGE 1
+
+/*
+ The vertex stands for a face of the level before.
+ */
+#define WELT_PARENT_FACE 2
+
+/*
+ Why a call failed: a code, a message of one line, and the places it speaks of. Never changes.
+ */
+typedef struct welt_error welt_error;
+
+/*
+ Watches and cancels a long call. All functions of a job may be called from any thread at any time, also while a call
+ works with it. Cancelling is for good: use a new job for the next call.
+ */
+typedef struct welt_job welt_job;
+
+/*
+ A control mesh. Its vertices, edges and faces are numbered from 0 without gaps.
+ */
+typedef struct welt_mesh welt_mesh;
+
+/*
+ The Catmull-Clark refinements of a mesh, level by level. Level 0 is the mesh itself as it was. Never changes, and does
+ not depend on the mesh after it was made.
+ */
+typedef struct welt_refinement welt_refinement;
+
+/*
+ The version of the library that runs, in the form of WELT_VERSION. It can differ from that of the header when the
+ shared library was replaced. Since: 0.1.
+ */
+WELT_API
+uint32_t welt_version(void);
+
+/*
+ The version of the library that runs as text, such as "0.1.0". Owned by the library, valid for ever. Since: 0.1.
+ */
+WELT_API
+const char *welt_version_string(void);
+
+/*
+ Frees an error. NULL is allowed. Since: 0.1.
+ */
+WELT_API void welt_error_free(welt_error *error);
+
+/*
+ The status code of the call that failed; WELT_OK where error is NULL. Since: 0.1.
+ */
+WELT_API int32_t welt_error_code(const welt_error *error);
+
+/*
+ What went wrong and what to do about it: one line, UTF-8, NUL-terminated, valid until the error is freed. Empty where
+ error is NULL. Since: 0.1.
+ */
+WELT_API
+const char *welt_error_message(const welt_error *error);
+
+/*
+ Number of places the error speaks of; 0 where error is NULL. Since: 0.1.
+ */
+WELT_API size_t welt_error_place_count(const welt_error *error);
+
+/*
+ What kind of place number index is: one of WELT_PLACE_*. WELT_PLACE_WHOLE where there is no such place. Since: 0.1.
+ */
+WELT_API
+uint32_t welt_error_place_kind(const welt_error *error,
+                               size_t index);
+
+/*
+ Id number which (0 or 1) of place number index, 0-based: a place that is an edge has two, a vertex and a face have one.
+ WELT_NONE where there is none. Since: 0.1.
+ */
+WELT_API
+uint32_t welt_error_place_id(const welt_error *error,
+                             size_t index,
+                             uint32_t which);
+
+/*
+ What is wrong at place number index: one line, UTF-8, NUL-terminated, valid until the error is freed. Empty where there
+ is no such place. Since: 0.1.
+ */
+WELT_API
+const char *welt_error_place_message(const welt_error *error,
+                                     size_t index);
+
+/*
+ Makes a job. job: receives the handle; free it with welt_job_free after every call that uses it has returned.
+ Since: 0.1.
+ */
+WELT_API int32_t welt_job_create(welt_job **job, welt_error **error);
+
+/*
+ Frees a job. NULL is allowed. Since: 0.1.
+ */
+WELT_API void welt_job_free(welt_job *job);
+
+/*
+ Asks the call that works with the job to stop. It returns WELT_ERROR_CANCELLED soon after, and what it was changing is
+ as it was before. NULL is allowed. Since: 0.1.
+ */
+WELT_API
+void welt_job_cancel(const welt_job *job);
+
+/*
+ How much of the present call is done, in [0, 1]; 0 where job is NULL. Since: 0.1.
+ */
+WELT_API double welt_job_progress(const welt_job *job);
+
+/*
+ Writes the name of the present stage of the work, UTF-8 and NUL-terminated, cut where the buffer ends. Gives the length
+ of the whole name without its NUL; 0 where job is NULL. buffer: may be NULL when capacity is 0. capacity: room in
+ bytes. Since: 0.1.
+ */
+WELT_API
+size_t welt_job_stage(const welt_job *job,
+                      char *buffer,
+                      size_t capacity);
+
+/*
+ Makes a mesh of polygons.
+
+ face_sizes: number of vertices of each face, 3 or more.
+ face_count: number of faces.
+ face_vertices: the vertices of all faces one after the other, counter-clockwise seen from outside, 0-based.
+ face_vertex_count: number of entries of face_vertices, the sum of face_sizes.
+ positions: x, y and z of each vertex, finite numbers.
+ vertex_count: number of vertices; those without a face are kept.
+ stride: bytes from one vertex to the next, a multiple of 8 and at least 24; 0 for 24.
+ mesh: receives the handle; free it with welt_mesh_free.
+
+ The arrays are copied. Fails with WELT_ERROR_MESH where the polygons are no surface (an edge with three faces, fans of
+ faces that meet in a vertex only, neighbours that are inside out to each other, ...): each place of the error is one
+ defect. Since: 0.1.
+ */
+WELT_API
+int32_t welt_mesh_create(const uint32_t *face_sizes,
+                         size_t face_count,
+                         const uint32_t *face_vertices,
+                         size_t face_vertex_count,
+                         const double *positions,
+                         size_t vertex_count,
+                         size_t stride,
+                         welt_mesh **mesh,
+                         welt_error **error);
+
+/*
+ Frees a mesh. NULL is allowed. Since: 0.1.
+ */
+WELT_API void welt_mesh_free(welt_mesh *mesh);
+
+/*
+ Number of vertices; 0 where mesh is NULL or poisoned. Since: 0.1.
+ */
+WELT_API size_t welt_mesh_vertex_count(const welt_mesh *mesh);
+
+/*
+ Number of edges; 0 where mesh is NULL or poisoned. Since: 0.1.
+ */
+WELT_API size_t welt_mesh_edge_count(const welt_mesh *mesh);
+
+/*
+ Number of faces; 0 where mesh is NULL or poisoned. Since: 0.1.
+ */
+WELT_API size_t welt_mesh_face_count(const welt_mesh *mesh);
+
+/*
+ Sum of the numbers of vertices of all faces; 0 where mesh is NULL or poisoned. Since: 0.1.
+ */
+WELT_API size_t welt_mesh_face_vertex_count(const welt_mesh *mesh);
+
+/*
+ The positions of the vertices as a view.
+
+ mesh: must not be NULL.
+ positions: receives the address of x, y and z of each vertex, 3 * welt_mesh_vertex_count(mesh) doubles that belong to
+ the mesh and are valid until it is changed or freed.
+
+ Since: 0.1.
+ */
+WELT_API
+int32_t welt_mesh_positions(const welt_mesh *mesh,
+                            const double **positions,
+                            welt_error **error);
+
+/*
+ Moves all vertices.
+
+ mesh: must not be NULL.
+ positions: x, y and z of each vertex, finite numbers.
+ vertex_count: must be that of the mesh.
+ stride: bytes from one vertex to the next, a multiple of 8 and at least 24; 0 for 24.
+
+ After a failure the mesh is as it was before. Since: 0.1.
+ */
+WELT_API
+int32_t welt_mesh_set_positions(welt_mesh *mesh,
+                                const double *positions,
+                                size_t vertex_count,
+                                size_t stride,
+                                welt_error **error);
+
+/*
+ Writes the faces, in the form that welt_mesh_create takes.
+
+ mesh: must not be NULL.
+ face_sizes: receives the number of vertices of each face.
+ face_capacity: room in face_sizes, at least welt_mesh_face_count(mesh) elements.
+ face_vertices: receives the vertices of all faces one after the other, counter-clockwise, 0-based.
+ face_vertex_capacity: room in face_vertices, at least welt_mesh_face_vertex_count(mesh) elements.
+
+ Since: 0.1.
+ */
+WELT_API
+int32_t welt_mesh_faces(const welt_mesh *mesh,
+                        uint32_t *face_sizes,
+                        size_t face_capacity,
+                        uint32_t *face_vertices,
+                        size_t face_vertex_capacity,
+                        welt_error **error);
+
+/*
+ Writes the point of the limit surface that belongs to each vertex. A vertex without a face stays where it is.
+
+ mesh: must not be NULL.
+ positions: receives x, y and z of each point.
+ capacity: room in positions, at least 3 * welt_mesh_vertex_count(mesh) doubles.
+
+ Since: 0.1.
+ */
+WELT_API
+int32_t welt_mesh_limit_positions(const welt_mesh *mesh,
+                                  double *positions,
+                                  size_t capacity,
+                                  welt_error **error);
+
+/*
+ Writes the unit normal of the limit surface at each vertex, outwards; (0, 0, 0) where there is none: at a vertex without
+ a face, and where the surface has no tangent plane.
+
+ mesh: must not be NULL.
+ normals: receives x, y and z of each normal.
+ capacity: room in normals, at least 3 * welt_mesh_vertex_count(mesh) doubles.
+
+ Since: 0.1.
+ */
+WELT_API
+int32_t welt_mesh_limit_normals(const welt_mesh *mesh,
+                                double *normals,
+                                size_t capacity,
+                                welt_error **error);
+
+/*
+ Refines a mesh.
+
+ mesh: must not be NULL.
+ depth: number of the last level, 0 or more; each level has four times the faces of the one before.
+ job: may be NULL.
+ refinement: receives the handle; free it with welt_refinement_free.
+
+ Fails with WELT_ERROR_TOO_LARGE before anything is computed where a level would have more elements than 31 bits can
+ number, and with WELT_ERROR_CANCELLED. Since: 0.1.
+ */
+WELT_API
+int32_t welt_refinement_create(const welt_mesh *mesh,
+                               uint32_t depth,
+                               const welt_job *job,
+                               welt_refinement **refinement,
+                               welt_error **error);
+
+/*
+ Frees a refinement. NULL is allowed. Since: 0.1.
+ */
+WELT_API void welt_refinement_free(welt_refinement *refinement);
+
+/*
+ Number of vertices of a level; 0 where refinement is NULL or has no such level. Since: 0.1.
+ */
+WELT_API size_t welt_refinement_vertex_count(const welt_refinement *refinement, uint32_t level);
+
+/*
+ Number of edges of a level; 0 where refinement is NULL or has no such level. Since: 0.1.
+ */
+WELT_API size_t welt_refinement_edge_count(const welt_refinement *refinement, uint32_t level);
+
+/*
+ Number of faces of a level; 0 where refinement is NULL or has no such level. All levels but 0 have quads only.
+ Since: 0.1.
+ */
+WELT_API
+size_t welt_refinement_face_count(const welt_refinement *refinement,
+                                  uint32_t level);
+
+/*
+ The positions of the vertices of a level as a view.
+
+ refinement: must not be NULL.
+ level: 0 to the depth.
+ positions: receives the address of x, y and z of each vertex, 3 * welt_refinement_vertex_count(refinement, level)
+ doubles that belong to the refinement and are valid until it is freed.
+
+ Since: 0.1.
+ */
+WELT_API
+int32_t welt_refinement_positions(const welt_refinement *refinement,
+                                  uint32_t level,
+                                  const double **positions,
+                                  welt_error **error);
+
+/*
+ The vertices of the faces of a level as a view.
+
+ refinement: must not be NULL.
+ level: 0 to the depth.
+ vertices: receives the address of the vertices of all faces one after the other, counter-clockwise, 0-based. They belong
+ to the refinement and are valid until it is freed. On level 1 and above there are 4 per face: a face covers one
+ corner of a face of the level before, and has the point of that corner, of the edge that leaves it, of the face, and
+ of the edge that arrives. On level 0 the numbers of vertices are those that welt_mesh_faces gives.
+
+ Since: 0.1.
+ */
+WELT_API
+int32_t welt_refinement_face_vertices(const welt_refinement *refinement,
+                                      uint32_t level,
+                                      const uint32_t **vertices,
+                                      welt_error **error);
+
+/*
+ What the vertices of a level stand for on the level before.
+
+ refinement: must not be NULL.
+ level: 1 to the depth.
+ kinds: receives one of WELT_PARENT_* per vertex.
+ elements: receives the number of that vertex, edge or face.
+ capacity: room in each of both, at least welt_refinement_vertex_count(refinement, level) elements.
+
+ Points of vertices come first, then those of edges, then those of faces, each in the order of the elements.
+ Since: 0.1.
+ */
+WELT_API
+int32_t welt_refinement_vertex_parents(const welt_refinement *refinement,
+                                       uint32_t level,
+                                       uint32_t *kinds,
+                                       uint32_t *elements,
+                                       size_t capacity,
+                                       welt_error **error);
+
+/*
+ Which faces of the level before the faces of a level cover.
+
+ refinement: must not be NULL.
+ level: 1 to the depth.
+ faces: receives the face of the level before per face.
+ corners: receives the corner of that face, 0-based.
+ capacity: room in each of both, at least welt_refinement_face_count(refinement, level) elements.
+
+ Since: 0.1.
+ */
+WELT_API
+int32_t welt_refinement_face_parents(const welt_refinement *refinement,
+                                     uint32_t level,
+                                     uint32_t *faces,
+                                     uint32_t *corners,
+                                     size_t capacity,
+                                     welt_error **error);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

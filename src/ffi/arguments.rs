@@ -1,0 +1,168 @@
+//! Arguments that come from C: pointers and counts are checked here and nowhere else.
+
+use super::failure::Failure;
+use super::status::WELT_ERROR_BUFFER;
+use std::mem::MaybeUninit;
+
+fn check<T>(pointer: *const T, name: &str) -> Result<(), Failure> {
+    if pointer.is_null() {
+        return Err(Failure::argument(format!("{name} is NULL")));
+    }
+    if !pointer.is_aligned() {
+        return Err(Failure::argument(format!("{name} is not aligned")));
+    }
+    Ok(())
+}
+
+fn check_length<T>(count: usize, name: &str) -> Result<(), Failure> {
+    match count.checked_mul(size_of::<T>()) {
+        Some(bytes) if isize::try_from(bytes).is_ok() => Ok(()),
+        _ => Err(Failure::argument(format!("{count} elements of {name} are more than memory can hold"))),
+    }
+}
+
+/// A handle that is read.
+///
+/// # Safety
+/// `pointer` is NULL or a living handle that nobody changes while the reference is used.
+pub(super) unsafe fn handle<'a, T>(pointer: *const T, name: &str) -> Result<&'a T, Failure> {
+    check(pointer, name)?;
+    // SAFETY: not NULL and aligned; the rest is what the caller answers for.
+    Ok(unsafe { &*pointer })
+}
+
+/// A handle that is changed.
+///
+/// # Safety
+/// `pointer` is NULL or a living handle that nobody else uses while the reference is used.
+pub(super) unsafe fn handle_mut<'a, T>(pointer: *mut T, name: &str) -> Result<&'a mut T, Failure> {
+    check(pointer, name)?;
+    // SAFETY: not NULL and aligned; the rest is what the caller answers for.
+    Ok(unsafe { &mut *pointer })
+}
+
+/// A handle that may be left out.
+///
+/// # Safety
+/// As for [`handle`].
+pub(super) unsafe fn optional<'a, T>(pointer: *const T, name: &str) -> Result<Option<&'a T>, Failure> {
+    if pointer.is_null() {
+        return Ok(None);
+    }
+    // SAFETY: as for this function.
+    unsafe { handle(pointer, name) }.map(Some)
+}
+
+/// Frees a handle; NULL is nothing to do.
+///
+/// # Safety
+/// `pointer` is NULL or came from [`Output::handle`] and was not freed.
+pub(super) unsafe fn free<T>(pointer: *mut T) {
+    if !pointer.is_null() {
+        // SAFETY: made by `Box::into_raw` and freed once, for which the caller answers.
+        super::boundary::boundary_value((), || drop(unsafe { Box::from_raw(pointer) }));
+    }
+}
+
+/// An array that is read. It may be NULL when it is empty.
+///
+/// # Safety
+/// `pointer` is NULL or the start of `count` elements that nobody changes while the slice is used.
+pub(super) unsafe fn array<'a, T>(pointer: *const T, count: usize, name: &str) -> Result<&'a [T], Failure> {
+    if count == 0 {
+        return Ok(&[]);
+    }
+    check(pointer, name)?;
+    check_length::<T>(count, name)?;
+    // SAFETY: not NULL, aligned, within the address space; the caller answers for the elements.
+    Ok(unsafe { std::slice::from_raw_parts(pointer, count) })
+}
+
+/// Points whose coordinates are `stride` bytes apart from point to point; 0 means that nothing lies between them.
+///
+/// # Safety
+/// `pointer` is NULL or the start of such an array of `count` points that nobody changes during the call.
+pub(super) unsafe fn points(
+    pointer: *const f64,
+    count: usize,
+    stride: usize,
+    name: &str,
+) -> Result<Vec<glam::DVec3>, Failure> {
+    const POINT: usize = size_of::<[f64; 3]>();
+    const DOUBLE: usize = size_of::<f64>();
+    let stride = if stride == 0 { POINT } else { stride };
+    if stride < POINT || !stride.is_multiple_of(DOUBLE) {
+        return Err(Failure::argument(format!(
+            "the stride of {name} is {stride} bytes; it must be 0 or a multiple of {DOUBLE} of at least {POINT}"
+        )));
+    }
+    let Some(last) = count.checked_sub(1) else { return Ok(Vec::new()) };
+    let step = stride / DOUBLE;
+    let doubles = last.checked_mul(step).and_then(|start| start.checked_add(3)).ok_or_else(|| {
+        Failure::argument(format!("{count} points of {name} are more than memory can hold"))
+    })?;
+    // SAFETY: the last point ends with this many doubles, all of which belong to the caller's array.
+    let doubles = unsafe { array(pointer, doubles, name) }?;
+    Ok(doubles.chunks(step).map(|point| glam::DVec3::new(point[0], point[1], point[2])).collect())
+}
+
+/// A place for one result. It is written only by a call that succeeds.
+pub(super) struct Output<T>(*mut T);
+
+impl<T> Output<T> {
+    /// # Safety
+    /// `pointer` is NULL or can be written to until the end of the call.
+    pub(super) unsafe fn new(pointer: *mut T, name: &str) -> Result<Self, Failure> {
+        check(pointer, name)?;
+        Ok(Self(pointer))
+    }
+
+    pub(super) fn set(self, value: T) {
+        // SAFETY: whoever made `self` answers for the pointer. `write` because what is there may be uninitialised.
+        unsafe { self.0.write(value) };
+    }
+}
+
+impl<T> Output<*mut T> {
+    /// Hands a new handle to the caller, who frees it with the function of its kind.
+    pub(super) fn handle(self, content: T) {
+        self.set(Box::into_raw(Box::new(content)));
+    }
+}
+
+/// The caller's buffer for an array of results.
+pub(super) struct Buffer<'a, T>(&'a mut [MaybeUninit<T>]);
+
+impl<T: Copy> Buffer<'_, T> {
+    /// A buffer that has room for the `needed` elements.
+    ///
+    /// # Safety
+    /// `pointer` is NULL or the start of room for `capacity` elements that nobody else uses during the call.
+    pub(super) unsafe fn new(
+        pointer: *mut T,
+        capacity: usize,
+        needed: usize,
+        name: &str,
+    ) -> Result<Self, Failure> {
+        if capacity < needed {
+            return Err(Failure::new(
+                WELT_ERROR_BUFFER,
+                format!("{name} has room for {capacity} elements; {needed} are needed"),
+            ));
+        }
+        if needed == 0 {
+            return Ok(Self(&mut []));
+        }
+        check(pointer, name)?;
+        check_length::<T>(needed, name)?;
+        // SAFETY: not NULL, aligned, within the address space; `MaybeUninit` asks nothing of the content.
+        Ok(Self(unsafe { std::slice::from_raw_parts_mut(pointer.cast(), needed) }))
+    }
+
+    /// Writes the elements, as many as were said to be needed.
+    pub(super) fn fill(self, elements: impl IntoIterator<Item = T>) {
+        for (slot, element) in self.0.iter_mut().zip(elements) {
+            slot.write(element);
+        }
+    }
+}

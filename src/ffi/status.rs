@@ -1,0 +1,18 @@
+//! Status codes. Numbers are never reused.
+
+/// Success.
+pub const WELT_OK: i32 = 0;
+/// An argument is NULL that must not be, or has a value outside its range. Nothing was changed.
+pub const WELT_ERROR_ARGUMENT: i32 = -1;
+/// The polygons are no surface: the places of the error list every defect.
+pub const WELT_ERROR_MESH: i32 = -2;
+/// The job was cancelled. What the call was changing is as it was before.
+pub const WELT_ERROR_CANCELLED: i32 = -3;
+/// The result would have more elements than 31 bits can number.
+pub const WELT_ERROR_TOO_LARGE: i32 = -4;
+/// A buffer is too small; the message says how much room is needed.
+pub const WELT_ERROR_BUFFER: i32 = -5;
+/// The handle was left half changed by a call that returned WELT_ERROR_INTERNAL. It can only be freed.
+pub const WELT_ERROR_POISONED: i32 = -6;
+/// A defect of the library; the message says where. Please report it.
+pub const WELT_ERROR_INTERNAL: i32 = -7;

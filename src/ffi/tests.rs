@@ -1,0 +1,250 @@
+//! What a C caller sees when it makes mistakes.
+
+use super::*;
+use crate::ffi::boundary::{Guarded, boundary};
+use crate::ffi::failure::Failure;
+use std::ffi::CStr;
+use std::ptr::{null, null_mut};
+
+const TETRAHEDRON: [f64; 12] = [0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0];
+const SIZES: [u32; 4] = [3; 4];
+const VERTICES: [u32; 12] = [0, 2, 1, 0, 1, 3, 1, 2, 3, 2, 0, 3];
+
+fn create(
+    sizes: &[u32],
+    vertices: &[u32],
+    positions: &[f64],
+    stride: usize,
+    mesh: *mut *mut WeltMesh,
+    error: *mut *mut WeltError,
+) -> i32 {
+    // SAFETY: slices give valid pointers; the rest is what each test checks.
+    unsafe {
+        welt_mesh_create(
+            sizes.as_ptr(),
+            sizes.len(),
+            vertices.as_ptr(),
+            vertices.len(),
+            positions.as_ptr(),
+            positions.len() / 3,
+            stride,
+            mesh,
+            error,
+        )
+    }
+}
+
+fn tetrahedron() -> *mut WeltMesh {
+    let mut mesh = null_mut();
+    assert_eq!(create(&SIZES, &VERTICES, &TETRAHEDRON, 0, &mut mesh, null_mut()), WELT_OK);
+    mesh
+}
+
+/// Code and message of a failed call, and frees the error.
+fn take(error: &mut *mut WeltError) -> (i32, String) {
+    // SAFETY: `error` was written by a call.
+    unsafe {
+        let message = CStr::from_ptr(welt_error_message(*error)).to_str().unwrap().to_owned();
+        let code = welt_error_code(*error);
+        welt_error_free(*error);
+        *error = null_mut();
+        (code, message)
+    }
+}
+
+#[test]
+fn version_is_that_of_the_package() {
+    let parts = [WELT_VERSION_MAJOR, WELT_VERSION_MINOR, WELT_VERSION_PATCH];
+    let text = parts.map(|part| part.to_string()).join(".");
+    assert_eq!(text, env!("CARGO_PKG_VERSION"));
+    assert_eq!(welt_version(), (parts[0] * 256 + parts[1]) * 256 + parts[2]);
+    // SAFETY: a string that lives for ever.
+    assert_eq!(unsafe { CStr::from_ptr(welt_version_string()) }.to_str().unwrap(), text);
+}
+
+#[test]
+fn wrong_arguments_are_named() {
+    let mut error = null_mut();
+    let mut mesh = null_mut();
+    assert_eq!(create(&SIZES, &VERTICES, &TETRAHEDRON, 0, null_mut(), &mut error), WELT_ERROR_ARGUMENT);
+    assert_eq!(take(&mut error).1, "mesh is NULL");
+    assert_eq!(create(&SIZES, &VERTICES, &TETRAHEDRON, 20, &mut mesh, &mut error), WELT_ERROR_ARGUMENT);
+    assert!(take(&mut error).1.contains("stride of positions is 20 bytes"));
+    assert_eq!(create(&[3, 3], &VERTICES, &TETRAHEDRON, 0, &mut mesh, &mut error), WELT_ERROR_ARGUMENT);
+    assert!(take(&mut error).1.contains("add up to 6 but there are 12"));
+    // SAFETY: NULL and impossible counts are what is tested; nothing behind them is read.
+    unsafe {
+        let (sizes, vertices) = (SIZES.as_ptr(), VERTICES.as_ptr());
+        let positions = TETRAHEDRON.as_ptr();
+        let status = welt_mesh_create(null(), 4, vertices, 12, positions, 4, 0, &mut mesh, &mut error);
+        assert_eq!((status, take(&mut error).1.as_str()), (WELT_ERROR_ARGUMENT, "face_sizes is NULL"));
+        let status =
+            welt_mesh_create(sizes, 4, vertices, 12, positions, usize::MAX, 0, &mut mesh, &mut error);
+        assert_eq!(status, WELT_ERROR_ARGUMENT);
+        assert!(take(&mut error).1.contains("more than memory can hold"));
+        let status =
+            welt_mesh_create(sizes, usize::MAX, vertices, 12, positions, 4, 0, &mut mesh, &mut error);
+        assert_eq!(status, WELT_ERROR_ARGUMENT);
+        assert!(take(&mut error).1.contains("face_sizes"));
+    }
+    assert!(mesh.is_null(), "written by a call that failed");
+}
+
+#[test]
+fn defects_become_places() {
+    let mut error = null_mut();
+    let mut mesh = null_mut();
+    let inside_out = [0, 2, 1, 0, 1, 3, 1, 2, 3, 0, 2, 3];
+    assert_eq!(create(&SIZES, &inside_out, &TETRAHEDRON, 0, &mut mesh, &mut error), WELT_ERROR_MESH);
+    // SAFETY: `error` was written by the call.
+    unsafe {
+        assert_eq!(welt_error_place_count(error), 3);
+        assert_eq!(welt_error_place_kind(error, 0), WELT_PLACE_EDGE);
+        let ids = [0, 1, 2].map(|which| welt_error_place_id(error, 0, which));
+        assert_eq!(ids, [0, 2, WELT_NONE]);
+        let message = CStr::from_ptr(welt_error_place_message(error, 0)).to_str().unwrap();
+        assert!(message.contains("edge 0-2"), "{message}");
+        assert_eq!(welt_error_place_id(error, 3, 0), WELT_NONE);
+        welt_error_free(error);
+    }
+}
+
+#[test]
+fn null_handles_are_answered() {
+    let mut error = null_mut();
+    // SAFETY: NULL is what is tested.
+    unsafe {
+        welt_mesh_free(null_mut());
+        welt_error_free(null_mut());
+        welt_job_free(null_mut());
+        welt_refinement_free(null_mut());
+        welt_job_cancel(null());
+        assert_eq!(welt_job_progress(null()), 0.0);
+        assert_eq!(welt_job_stage(null(), null_mut(), 0), 0);
+        assert_eq!(welt_mesh_vertex_count(null()), 0);
+        assert_eq!(welt_refinement_face_count(null(), 0), 0);
+        assert_eq!(welt_error_code(null()), WELT_OK);
+        assert_eq!(CStr::from_ptr(welt_error_message(null())), c"");
+        assert_eq!(welt_mesh_limit_positions(null(), null_mut(), 0, &mut error), WELT_ERROR_ARGUMENT);
+    }
+    assert_eq!(take(&mut error), (WELT_ERROR_ARGUMENT, "mesh is NULL".to_owned()));
+}
+
+#[test]
+fn a_mesh_comes_back_as_it_was_given() {
+    let mut padded = Vec::new();
+    for point in TETRAHEDRON.chunks(3) {
+        padded.extend_from_slice(point);
+        padded.push(f64::NAN);
+    }
+    padded.pop();
+    let mut mesh = null_mut();
+    let mut view = null();
+    let (mut sizes, mut vertices) = ([0; 4], [0; 12]);
+    let mut error = null_mut();
+    // SAFETY: buffers and counts agree.
+    unsafe {
+        let (s, v) = (SIZES.as_ptr(), VERTICES.as_ptr());
+        assert_eq!(welt_mesh_create(s, 4, v, 12, padded.as_ptr(), 4, 32, &mut mesh, &mut error), WELT_OK);
+        assert_eq!((welt_mesh_vertex_count(mesh), welt_mesh_edge_count(mesh)), (4, 6));
+        assert_eq!((welt_mesh_face_count(mesh), welt_mesh_face_vertex_count(mesh)), (4, 12));
+        assert_eq!(welt_mesh_positions(mesh, &mut view, &mut error), WELT_OK);
+        assert_eq!(std::slice::from_raw_parts(view, 12), TETRAHEDRON);
+        let (s, v) = (sizes.as_mut_ptr(), vertices.as_mut_ptr());
+        assert_eq!(welt_mesh_faces(mesh, s, 4, v, 11, &mut error), WELT_ERROR_BUFFER);
+        assert!(take(&mut error).1.contains("room for 11 elements; 12 are needed"));
+        assert_eq!(sizes, [0; 4], "written by a call that failed");
+        assert_eq!(welt_mesh_faces(mesh, s, 4, v, 12, &mut error), WELT_OK);
+        welt_mesh_free(mesh);
+    }
+    assert_eq!((sizes, vertices), (SIZES, VERTICES));
+}
+
+#[test]
+fn bad_positions_change_nothing() {
+    let mesh = tetrahedron();
+    let mut moved = TETRAHEDRON;
+    moved[4] = f64::NAN;
+    let (mut error, mut view) = (null_mut(), null());
+    // SAFETY: buffers and counts agree.
+    unsafe {
+        assert_eq!(welt_mesh_set_positions(mesh, moved.as_ptr(), 4, 0, &mut error), WELT_ERROR_MESH);
+        assert_eq!(welt_error_place_id(error, 0, 0), 1);
+        take(&mut error);
+        assert_eq!(welt_mesh_set_positions(mesh, moved.as_ptr(), 3, 0, &mut error), WELT_ERROR_ARGUMENT);
+        assert!(take(&mut error).1.contains("the mesh has 4 vertices"));
+        assert_eq!(welt_mesh_positions(mesh, &mut view, null_mut()), WELT_OK);
+        assert_eq!(std::slice::from_raw_parts(view, 12), TETRAHEDRON);
+        moved[4] = 7.0;
+        assert_eq!(welt_mesh_set_positions(mesh, moved.as_ptr(), 4, 0, &mut error), WELT_OK);
+        assert_eq!(welt_mesh_positions(mesh, &mut view, null_mut()), WELT_OK);
+        assert_eq!(*view.add(4), 7.0);
+        welt_mesh_free(mesh);
+    }
+}
+
+#[test]
+fn a_cancelled_job_stops_the_work() {
+    let mesh = tetrahedron();
+    let (mut job, mut refinement, mut error) = (null_mut(), null_mut(), null_mut());
+    // SAFETY: handles are made here and freed at the end.
+    unsafe {
+        assert_eq!(welt_job_create(&mut job, &mut error), WELT_OK);
+        assert_eq!(welt_refinement_create(mesh, 2, job, &mut refinement, &mut error), WELT_OK);
+        assert_eq!(welt_job_progress(job), 1.0);
+        let mut stage = [0x7f; 4];
+        assert_eq!(welt_job_stage(job, stage.as_mut_ptr(), stage.len()), "refine".len());
+        assert_eq!(CStr::from_ptr(stage.as_ptr()), c"ref");
+        welt_refinement_free(refinement);
+        refinement = null_mut();
+        welt_job_cancel(job);
+        let status = welt_refinement_create(mesh, 2, job, &mut refinement, &mut error);
+        assert_eq!((status, refinement), (WELT_ERROR_CANCELLED, null_mut()));
+        assert_eq!(take(&mut error).1, "cancelled");
+        welt_job_free(job);
+        welt_mesh_free(mesh);
+    }
+}
+
+#[test]
+fn levels_outside_the_range_are_refused() {
+    let mesh = tetrahedron();
+    let (mut refinement, mut error, mut view) = (null_mut(), null_mut(), null());
+    // SAFETY: handles are made here and freed at the end.
+    unsafe {
+        let status = welt_refinement_create(mesh, u32::MAX, null(), &mut refinement, &mut error);
+        assert_eq!(status, WELT_ERROR_TOO_LARGE);
+        take(&mut error);
+        assert_eq!(welt_refinement_create(mesh, 1, null(), &mut refinement, &mut error), WELT_OK);
+        assert_eq!(welt_refinement_positions(refinement, 2, &mut view, &mut error), WELT_ERROR_ARGUMENT);
+        assert_eq!(take(&mut error).1, "there is no level 2; the last is 1");
+        let parents = welt_refinement_face_parents;
+        assert_eq!(parents(refinement, 0, null_mut(), null_mut(), 0, &mut error), WELT_ERROR_ARGUMENT);
+        take(&mut error);
+        let (mut faces, mut corners) = ([0; 12], [0; 12]);
+        let (f, c) = (faces.as_mut_ptr(), corners.as_mut_ptr());
+        assert_eq!(parents(refinement, 1, f, c, 12, &mut error), WELT_OK);
+        assert_eq!((faces[11], corners[11]), (3, 2));
+        welt_refinement_free(refinement);
+        welt_mesh_free(mesh);
+    }
+}
+
+#[test]
+fn a_panic_is_an_error_and_poisons_what_was_being_changed() {
+    let mut guarded = Guarded::new(1);
+    let mut error = null_mut();
+    // SAFETY: `error` can be written to.
+    let status = unsafe {
+        boundary(&mut error, || {
+            guarded.change(|_| -> Result<(), Failure> { std::panic::resume_unwind(Box::new("broken\nhere")) })
+        })
+    };
+    assert_eq!(status, WELT_ERROR_INTERNAL);
+    assert_eq!(take(&mut error).1, "internal error: broken here; please report it");
+    assert_eq!(guarded.read().unwrap_err().code, WELT_ERROR_POISONED);
+    assert_eq!(guarded.change(|_| Ok(())).unwrap_err().code, WELT_ERROR_POISONED);
+    let mut sound = Guarded::new(1);
+    assert!(sound.change(|_| -> Result<(), Failure> { Err(Failure::argument("no")) }).is_err());
+    assert!(sound.read().is_ok());
+}
