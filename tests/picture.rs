@@ -299,10 +299,10 @@ fn chairs_fill_their_pictures() {
         return;
     }
     let views = [
-        ("bs0_chair_cage", DVec3::new(0.9, 0.7, 1.6)),
-        ("kl_mid-century-chair_cage", DVec3::new(0.9, 0.7, 1.6)),
-        ("sc_armchair2_cage", DVec3::new(0.9, 0.7, 1.6)),
-        ("bsby_leaf_chair_cage", DVec3::new(0.9, 0.7, 1.6)),
+        ("bs0_chair_cage", DVec3::new(0.9, 0.8, 1.4)),
+        ("kl_mid-century-chair_cage", DVec3::new(0.7, 0.9, 1.6)),
+        ("sc_armchair2_cage", DVec3::new(0.9, 0.6, 1.6)),
+        ("bsby_leaf_chair_cage", DVec3::new(-0.9, 0.6, 1.5)),
     ];
     for (name, viewer) in views {
         let cage = Flat::read(&data.join(name).with_extension("obj"));
