@@ -198,12 +198,13 @@ fn colours_show_the_sign_of_the_values() {
     assert!(unknown.iter().all(|&part| part < 110), "no value is dark: {unknown:?}");
 }
 
-/// Pixels of a marked edge in a cage of a front and a back wall.
-fn red_pixels(edge: (u32, u32)) -> usize {
+/// Draws a front wall (vertices 0 to 3) and a smaller one behind it (4 to 7); counts the pixels and the columns that the
+/// marked edge colours.
+fn marked(edge: (u32, u32)) -> (usize, usize) {
     let mut walls = Flat::default();
-    for z in [0.0, -1.0] {
-        for (x, y) in [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)] {
-            walls.positions.push(DVec3::new(x * (1.0 + z / 2.0), y * (1.0 + z / 2.0), z));
+    for (z, half) in [(0.0, 1.0), (-1.0, 0.5)] {
+        for (x, y) in [(-half, -half), (half, -half), (half, half), (-half, half)] {
+            walls.positions.push(DVec3::new(x, y, z));
         }
     }
     walls.push(&[0, 1, 2, 3]);
@@ -211,19 +212,24 @@ fn red_pixels(edge: (u32, u32)) -> usize {
     let edges = [(edge.0, edge.1, EdgeKind::Marked)];
     let content = Content::Cage { shape: walls.shape(), edges: &edges, displaced: &[] };
     let camera = Camera::framing(&walls.positions, DVec3::Z, DVec3::Y);
-    let image =
-        Figure { title: "", panels: vec![Panel { content, caption: "" }], camera, width: 300, height: 300 }
-            .render();
-    let red = |&(x, y): &(usize, usize)| image.pixel(x, y).is_some_and(|[r, g, _]| r > 150 && g < 100);
-    // Above the legend.
-    (0..230).flat_map(|y| (0..300).map(move |x| (x, y))).filter(red).count()
+    let panels = vec![Panel { content, caption: "" }];
+    let image = Figure { title: "", panels, camera, width: 300, height: 300 }.render();
+    let red = |x, y| image.pixel(x, y).is_some_and(|[r, g, _]| r > 150 && g < 100);
+    // The lower rows hold the legend.
+    let columns: Vec<usize> = (0..300).map(|x| (0..240).filter(|&y| red(x, y)).count()).collect();
+    (columns.iter().sum(), columns.iter().filter(|&&count| count > 0).count())
 }
 
 #[test]
-fn hidden_edges_are_hidden_and_others_have_their_width() {
-    assert_eq!(red_pixels((4, 5)), 0);
-    let front = red_pixels((2, 3));
-    assert!(front > 300, "{front}");
+fn hidden_edges_are_hidden_and_others_have_an_even_width() {
+    assert_eq!(marked((4, 5)), (0, 0));
+    let (pixels, columns) = marked((2, 3));
+    assert!(columns > 200, "the whole edge shows: {columns}");
+    let width = pixels as f64 / columns as f64;
+    assert!((2.0..=3.5).contains(&width), "{width}");
+    // From the hidden wall to the front: it ends in a corner that shows, but lies behind all of the way.
+    let (_, columns) = marked((4, 0));
+    assert!(columns < 12, "{columns}");
 }
 
 #[test]

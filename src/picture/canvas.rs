@@ -118,8 +118,9 @@ impl Canvas {
     pub(super) fn shows(&self, at: DVec3, slack: f64) -> bool {
         let (x, y) = (at.x.floor() as i64, at.y.floor() as i64);
         let limit = (at.z - slack) as f32;
-        (y - 1..=y + 1)
-            .any(|y| (x - 1..=x + 1).any(|x| self.depth_at(x, y).is_some_and(|depth| depth >= limit)))
+        [(0, 0), (-1, 0), (1, 0), (0, -1), (0, 1)]
+            .into_iter()
+            .any(|(dx, dy)| self.depth_at(x + dx, y + dy).is_some_and(|depth| depth >= limit))
     }
 
     fn depth_at(&self, x: i64, y: i64) -> Option<f32> {

@@ -62,6 +62,8 @@ pub(super) fn reflection_lines(n: [f32; 3]) -> Light {
     let phase = (height * STRIPES / 4.0).rem_euclid(1.0);
     // A triangle wave, steepened: the rim of a stripe is a narrow ramp instead of a jump.
     let wave = ((0.25 - (phase - 0.5).abs()) * 24.0 + 0.5).clamp(0.0, 1.0);
-    let level = (0.04 + 0.84 * wave) * (0.6 + 0.4 * n[2].max(0.0));
+    // Towards the outline stripes become finer than samples and fade into their mean.
+    let clear = (n[2] * 8.0).clamp(0.0, 1.0);
+    let level = (0.46 + 0.84 * (wave - 0.5) * clear) * (0.6 + 0.4 * n[2].max(0.0));
     [level; 3]
 }
