@@ -107,9 +107,9 @@ impl Flat {
 }
 
 fn cube() -> Flat {
-    let mut mesh = Flat::default();
-    mesh.positions =
+    let positions =
         (0..8).map(|i| DVec3::new((i & 1) as f64, (i >> 1 & 1) as f64, (i >> 2) as f64)).collect();
+    let mut mesh = Flat { positions, ..Flat::default() };
     for face in [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]] {
         mesh.push(&face);
     }
@@ -198,12 +198,13 @@ fn colours_show_the_sign_of_the_values() {
     assert!(unknown.iter().all(|&part| part < 110), "no value is dark: {unknown:?}");
 }
 
-/// Pixels of a marked edge in a cage of a front and a back wall.
-fn red_pixels(edge: (u32, u32)) -> usize {
+/// Draws a front wall (vertices 0 to 3) and a smaller one behind it (4 to 7); counts the pixels and the columns that the
+/// marked edge colours.
+fn marked(edge: (u32, u32)) -> (usize, usize) {
     let mut walls = Flat::default();
-    for z in [0.0, -1.0] {
-        for (x, y) in [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)] {
-            walls.positions.push(DVec3::new(x * (1.0 + z / 2.0), y * (1.0 + z / 2.0), z));
+    for (z, half) in [(0.0, 1.0), (-1.0, 0.5)] {
+        for (x, y) in [(-half, -half), (half, -half), (half, half), (-half, half)] {
+            walls.positions.push(DVec3::new(x, y, z));
         }
     }
     walls.push(&[0, 1, 2, 3]);
@@ -211,19 +212,53 @@ fn red_pixels(edge: (u32, u32)) -> usize {
     let edges = [(edge.0, edge.1, EdgeKind::Marked)];
     let content = Content::Cage { shape: walls.shape(), edges: &edges, displaced: &[] };
     let camera = Camera::framing(&walls.positions, DVec3::Z, DVec3::Y);
-    let image =
-        Figure { title: "", panels: vec![Panel { content, caption: "" }], camera, width: 300, height: 300 }
-            .render();
-    let red = |&(x, y): &(usize, usize)| image.pixel(x, y).is_some_and(|[r, g, _]| r > 150 && g < 100);
-    // Above the legend.
-    (0..230).flat_map(|y| (0..300).map(move |x| (x, y))).filter(red).count()
+    let panels = vec![Panel { content, caption: "" }];
+    let image = Figure { title: "", panels, camera, width: 300, height: 300 }.render();
+    let red = |x, y| image.pixel(x, y).is_some_and(|[r, g, _]| r > 150 && g < 100);
+    // The lower rows hold the legend.
+    let columns: Vec<usize> = (0..300).map(|x| (0..240).filter(|&y| red(x, y)).count()).collect();
+    (columns.iter().sum(), columns.iter().filter(|&&count| count > 0).count())
 }
 
 #[test]
-fn hidden_edges_are_hidden_and_others_have_their_width() {
-    assert_eq!(red_pixels((4, 5)), 0);
-    let front = red_pixels((2, 3));
-    assert!(front > 300, "{front}");
+fn hidden_edges_are_hidden_and_others_have_an_even_width() {
+    assert_eq!(marked((4, 5)), (0, 0));
+    let (pixels, columns) = marked((2, 3));
+    assert!(columns > 200, "the whole edge shows: {columns}");
+    let width = pixels as f64 / columns as f64;
+    assert!((2.0..=3.5).contains(&width), "{width}");
+    // From the hidden wall to the front: it ends in a corner that shows, but lies behind all of the way.
+    let (_, columns) = marked((4, 0));
+    assert!(columns < 12, "{columns}");
+}
+
+#[test]
+fn a_surface_looks_the_same_from_its_back() {
+    let ball = cube().subdivided().subdivided();
+    let mut reversed = Flat { positions: ball.positions.clone(), ..Flat::default() };
+    for face in ball.faces() {
+        reversed.push(&[face[0], face[3], face[2], face[1]]);
+    }
+    let outward: Vec<DVec3> = ball.positions.iter().map(|p| p - DVec3::splat(0.5)).collect();
+    let render = |shape: Shape<'_>, normals: &[DVec3]| {
+        let content = Content::Surface { shape, normals, finish: Finish::Studio };
+        let camera = Camera::framing(&ball.positions, DVec3::new(1.0, 2.0, 3.0), DVec3::Y);
+        Figure { title: "", panels: vec![Panel { content, caption: "" }], camera, width: 200, height: 200 }
+            .render()
+    };
+    let expected = render(ball.shape(), &outward);
+    for other in [
+        render(reversed.shape(), &outward),
+        render(reversed.shape(), &outward.iter().map(|n| -n).collect::<Vec<_>>()),
+    ] {
+        for (x, y) in (0..200).flat_map(|y| (0..200).map(move |x| (x, y))) {
+            let (p, q) = (expected.pixel(x, y).unwrap(), other.pixel(x, y).unwrap());
+            assert!(p.iter().zip(q).all(|(p, q)| p.abs_diff(q) <= 2), "{x} {y}: {p:?} {q:?}");
+        }
+    }
+    let top_left = expected.pixel(70, 60).unwrap();
+    let bottom_right = expected.pixel(130, 140).unwrap();
+    assert!(top_left[0] > bottom_right[0] + 40, "the light comes from above and left");
 }
 
 #[test]
@@ -299,10 +334,10 @@ fn chairs_fill_their_pictures() {
         return;
     }
     let views = [
-        ("bs0_chair_cage", DVec3::new(0.9, 0.7, 1.6)),
-        ("kl_mid-century-chair_cage", DVec3::new(0.9, 0.7, 1.6)),
-        ("sc_armchair2_cage", DVec3::new(0.9, 0.7, 1.6)),
-        ("bsby_leaf_chair_cage", DVec3::new(0.9, 0.7, 1.6)),
+        ("bs0_chair_cage", DVec3::new(0.9, 0.8, 1.4)),
+        ("kl_mid-century-chair_cage", DVec3::new(0.7, 0.9, 1.6)),
+        ("sc_armchair2_cage", DVec3::new(0.9, 0.6, 1.6)),
+        ("bsby_leaf_chair_cage", DVec3::new(-0.9, 0.6, 1.5)),
     ];
     for (name, viewer) in views {
         let cage = Flat::read(&data.join(name).with_extension("obj"));
@@ -318,7 +353,9 @@ fn chairs_fill_their_pictures() {
             .collect();
         let mut figure = figure(&cage, &surface, &values, &edges);
         figure.camera = Camera::framing(&surface.positions, viewer, DVec3::Y);
-        (figure.width, figure.height) = (1500, 560);
+        figure.title = name;
+        figure.panels[1].caption = "asked width 0.020, reached 0.0199; asked depth 0.010, reached 0.0100";
+        (figure.width, figure.height) = (1500, 600);
         let start = Instant::now();
         let image = figure.render();
         println!("{name}: {} faces in {:?}", surface.sizes.len(), start.elapsed());

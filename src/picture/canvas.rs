@@ -56,26 +56,26 @@ impl Canvas {
         if !corners.iter().all(|c| is_drawable(c.at)) {
             return;
         }
-        let snap = |v: f64| (v * SUBSAMPLES as f64).round() as i64;
         let [mut a, mut b, c] = corners;
-        let mut area = doubled_area(a.at, b.at, c.at, snap);
+        let [mut p, mut q, r] = corners.map(|corner| snapped(corner.at));
+        let mut area = doubled_area(p, q, r);
         if area < 0 {
             std::mem::swap(&mut a, &mut b);
+            std::mem::swap(&mut p, &mut q);
             area = -area;
         }
         if area == 0 {
             return;
         }
-        let [p, q, r] = [a, b, c].map(|corner| [snap(corner.at.x), snap(corner.at.y)]);
         let Some((columns, rows)) = self.covered(p, q, r) else { return };
 
         let first = [columns.start, rows.start].map(|i| i as i64 * SUBSAMPLES + SUBSAMPLES / 2);
         let edges = [Edge::new(q, r, first), Edge::new(r, p, first), Edge::new(p, q, first)];
         let mut at_row = edges.map(|edge| edge.value);
         let inverse_area = 1.0 / area as f32;
-        let rise = |of: &dyn Fn(&Corner<N>) -> f32| [of(&b) - of(&a), of(&c) - of(&a)];
-        let depth_rise = rise(&|corner| corner.at.z as f32);
-        let data_rise: [[f32; 2]; N] = std::array::from_fn(|i| rise(&|corner| corner.data[i]));
+        let depth_rise = [(b.at.z - a.at.z) as f32, (c.at.z - a.at.z) as f32];
+        let data_rise: [[f32; 2]; N] =
+            std::array::from_fn(|i| [b.data[i] - a.data[i], c.data[i] - a.data[i]]);
 
         for y in rows {
             let mut at = at_row;
@@ -118,8 +118,9 @@ impl Canvas {
     pub(super) fn shows(&self, at: DVec3, slack: f64) -> bool {
         let (x, y) = (at.x.floor() as i64, at.y.floor() as i64);
         let limit = (at.z - slack) as f32;
-        (y - 1..=y + 1)
-            .any(|y| (x - 1..=x + 1).any(|x| self.depth_at(x, y).is_some_and(|depth| depth >= limit)))
+        [(0, 0), (-1, 0), (1, 0), (0, -1), (0, 1)]
+            .into_iter()
+            .any(|(dx, dy)| self.depth_at(x + dx, y + dy).is_some_and(|depth| depth >= limit))
     }
 
     fn depth_at(&self, x: i64, y: i64) -> Option<f32> {
@@ -176,10 +177,12 @@ pub(super) fn is_drawable(at: DVec3) -> bool {
     at.abs().cmplt(DVec3::splat(FARTHEST)).all()
 }
 
-fn doubled_area(a: DVec3, b: DVec3, c: DVec3, snap: impl Fn(f64) -> i64) -> i64 {
-    let [abx, aby] = [snap(b.x) - snap(a.x), snap(b.y) - snap(a.y)];
-    let [acx, acy] = [snap(c.x) - snap(a.x), snap(c.y) - snap(a.y)];
-    abx * acy - aby * acx
+fn snapped(at: DVec3) -> [i64; 2] {
+    [at.x, at.y].map(|v| (v * SUBSAMPLES as f64).round() as i64)
+}
+
+fn doubled_area(p: [i64; 2], q: [i64; 2], r: [i64; 2]) -> i64 {
+    (q[0] - p[0]) * (r[1] - p[1]) - (q[1] - p[1]) * (r[0] - p[0])
 }
 
 /// The edge function of a directed edge: positive on the inner side, its value at the first sample, its steps to the next

@@ -10,7 +10,7 @@ const ENCODING_STEPS: usize = 4096;
 
 /// Blue end, middle and red end of the map in CIELAB (D65). The ends have equal lightness and similar chroma, so that
 /// deviations of either sign stand out alike.
-const BLUE: [f64; 3] = [40.0, 4.0, -48.0];
+const BLUE: [f64; 3] = [40.0, 14.0, -52.0];
 const MIDDLE: [f64; 3] = [89.0, 0.0, 0.0];
 const RED: [f64; 3] = [40.0, 55.0, 33.0];
 

@@ -144,7 +144,7 @@ fn cage_entries(edges: &[(u32, u32, EdgeKind)], displaced: &[u32]) -> Vec<(Swatc
         }
     }
     if !displaced.is_empty() {
-        entries.push((Swatch::Disc(panel::DISC_DIAMETER), panel::DISPLACED, "displaced vertex"));
+        entries.push((Swatch::Disc(panel::DISC_DIAMETER), panel::DISPLACED, "displaced"));
     }
     entries
 }

@@ -109,8 +109,8 @@ pub(super) fn swatches(
     width: f64,
     text: Type,
 ) {
-    let sample = text.height * 1.3;
-    let gap = text.height;
+    let sample = text.height * 1.1;
+    let gap = text.height * 0.9;
     let size = |name: &str| sample + text.height * 0.4 + text.width(name);
     let total =
         |row: &[(Swatch, [u8; 3], &str)]| row.iter().map(|entry| size(entry.2) + gap).sum::<f64>() - gap;

@@ -78,9 +78,9 @@ impl EdgeKind {
 
     pub(super) fn name(self) -> &'static str {
         match self {
-            Self::Feature => "feature line",
-            Self::Marked => "marked edge",
-            Self::Unresolved => "unresolved mark",
+            Self::Feature => "feature",
+            Self::Marked => "mark",
+            Self::Unresolved => "unresolved",
         }
     }
 

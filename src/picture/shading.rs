@@ -20,7 +20,7 @@ pub enum Finish {
 }
 
 /// Stripes, black and white together, over all directions of reflection.
-const STRIPES: f32 = 14.0;
+const STRIPES: f32 = 20.0;
 
 pub(super) fn dot(a: [f32; 3], b: [f32; 3]) -> f32 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
@@ -61,7 +61,9 @@ pub(super) fn reflection_lines(n: [f32; 3]) -> Light {
     let height = 2.0 * n[2] * n[1];
     let phase = (height * STRIPES / 4.0).rem_euclid(1.0);
     // A triangle wave, steepened: the rim of a stripe is a narrow ramp instead of a jump.
-    let wave = ((0.25 - (phase - 0.5).abs()) * 12.0 + 0.5).clamp(0.0, 1.0);
-    let level = (0.04 + 0.84 * wave) * (0.6 + 0.4 * n[2].max(0.0));
+    let wave = ((0.25 - (phase - 0.5).abs()) * 24.0 + 0.5).clamp(0.0, 1.0);
+    // Towards the outline stripes become finer than samples and fade into their mean.
+    let clear = (n[2] * 8.0).clamp(0.0, 1.0);
+    let level = (0.46 + 0.84 * (wave - 0.5) * clear) * (0.6 + 0.4 * n[2].max(0.0));
     [level; 3]
 }

@@ -112,3 +112,49 @@ pub(super) fn triangulate<const N: usize>(
 pub(super) fn project(positions: &[DVec3], view: &View) -> Vec<DVec3> {
     positions.iter().map(|&p| view.project(p)).collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Area covered by the triangles of a face, seen from above: overlaps count twice.
+    fn covered(points: &[(f64, f64)]) -> f64 {
+        let face: Vec<u32> = (0..points.len() as u32).collect();
+        let at = |v: u32| DVec3::new(points[v as usize].0, points[v as usize].1, 0.0);
+        let mut sum = 0.0;
+        triangulate(
+            &face,
+            |v| Corner { at: at(v), data: [] },
+            |t| {
+                sum += area_vector(t.iter().map(|corner| corner.at)).length() / 2.0;
+            },
+        );
+        sum
+    }
+
+    #[test]
+    fn triangles_cover_their_face_once() {
+        assert_eq!(covered(&[(0.0, 0.0), (4.0, 0.0), (0.0, 2.0)]), 4.0);
+        let arrow = [(0.0, 0.0), (4.0, 0.0), (1.0, 1.0), (0.0, 4.0)];
+        for turn in 0..4 {
+            let mut turned = arrow;
+            turned.rotate_left(turn);
+            assert_eq!(covered(&turned), 4.0, "the reflex corner is number {}", (6 - turn) % 4);
+        }
+        let hexagon = [(0.0, 0.0), (2.0, 0.0), (3.0, 1.0), (2.0, 2.0), (0.0, 2.0), (-1.0, 1.0)];
+        assert!((covered(&hexagon) - 6.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn faces_that_cannot_be_drawn_are_left_out() {
+        let positions = [DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::NAN];
+        let shape = Shape {
+            positions: &positions,
+            face_sizes: &[3, 2, 0, 3, 3, 3, 9],
+            face_vertices: &[0, 1, 2, 0, 1, 0, 1, 3, 0, 1, 4, 2, 1, 0],
+        };
+        let faces: Vec<&[u32]> = shape.faces().collect();
+        assert_eq!(faces, [[0, 1, 2], [2, 1, 0]]);
+        assert_eq!(shape.edges(), [(0, 1), (0, 2), (1, 2)]);
+    }
+}

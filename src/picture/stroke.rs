@@ -6,6 +6,9 @@ use glam::{DVec2, DVec3};
 
 /// How far behind a surface, in samples, a point of a line may lie and still show. It absorbs the snapping of corners.
 const SLACK: f64 = 3.0;
+/// Parts that show over fewer samples of a longer line are left out: they are the ends of hidden lines, within the slack of
+/// a vertex that is seen.
+const SHORTEST_RUN: usize = 6;
 /// Discs are seen as flat marks above the surface, so they need more than lines.
 const DISC_SLACK: f64 = 6.0;
 
@@ -28,19 +31,16 @@ impl Canvas {
         let (a, b) = (a.lerp(b, start), a.lerp(b, end));
         let steps = (b - a).truncate().length().ceil().max(1.0) as usize;
         let at = |i: usize| a.lerp(b, i as f64 / steps as f64);
-        let mut run: Option<usize> = None;
-        for i in 0..=steps {
-            match (self.shows(at(i), SLACK), run) {
-                (true, None) => run = Some(i),
-                (false, Some(from)) => {
-                    self.capsule(at(from).truncate(), at(i - 1).truncate(), pen);
-                    run = None;
-                }
-                _ => {}
+        let shortest = SHORTEST_RUN.min(steps);
+        let mut from = 0;
+        for i in 0..=steps + 1 {
+            if i <= steps && self.shows(at(i), SLACK) {
+                continue;
             }
-        }
-        if let Some(from) = run {
-            self.capsule(at(from).truncate(), b.truncate(), pen);
+            if i > from + shortest {
+                self.capsule(at(from).truncate(), at(i - 1).truncate(), pen);
+            }
+            from = i + 1;
         }
     }
 

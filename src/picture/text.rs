@@ -98,3 +98,38 @@ impl Type {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const PLAIN: Type = Type { height: CELL[0], colour: [0; 3] };
+
+    #[test]
+    fn text_breaks_at_spaces_and_is_cut_where_it_does_not_fit() {
+        let width = |characters: usize| CELL[1] * characters as f64;
+        let text = "asked width 0.020, reached 0.0199";
+        assert_eq!(PLAIN.wrapped(text, width(18), 2), ["asked width 0.020,", "reached 0.0199"]);
+        assert_eq!(PLAIN.wrapped(text, width(33), 2), [text]);
+        assert_eq!(PLAIN.wrapped(text, width(20), 1), ["asked width 0.020..."]);
+        assert_eq!(PLAIN.wrapped(text, width(2), 1), [".."]);
+        assert!(PLAIN.wrapped(" \n ", width(10), 2).is_empty());
+    }
+
+    #[test]
+    fn letters_stay_in_their_cells() {
+        for scale in [0.6, 1.0, 1.25, 2.5] {
+            let text = Type { height: CELL[0] * scale, colour: [0; 3] };
+            let mut image = Image::white(200, 100);
+            text.draw(&mut image, "H\u{e9}g", 20.0, 30.0);
+            let dark = |x: usize, y: usize| image.pixel(x, y).is_some_and(|[r, ..]| r < 128);
+            let inked = (0..200).flat_map(|x| (0..100).map(move |y| (x, y))).filter(|&(x, y)| dark(x, y));
+            let (mut count, right, bottom) = (0, 20.0 + text.width("Heg"), 30.0 + text.height);
+            for (x, y) in inked {
+                assert!(x >= 20 && (x as f64) < right && y >= 30 && (y as f64) < bottom, "{x} {y}");
+                count += 1;
+            }
+            assert!(count > 15, "{scale}: {count}");
+        }
+    }
+}
