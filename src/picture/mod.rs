@@ -1,7 +1,7 @@
 //! Figures as PNG files: control cage, limit surface, deviation map, side by side with captions and legends.
 //!
-//! Everything is drawn by the processor with parallel projection, so that the same input gives the same bytes on
-//! every machine without a display. A [`Figure`] lays out [`Panel`]s, each of which draws one [`Shape`]; the
+//! Everything is drawn by the processor with parallel projection: no display is needed, and a program gives the same
+//! bytes for the same input each time. A [`Figure`] lays out [`Panel`]s, each of which draws one [`Shape`]; the
 //! colours are mixed as linear light on a canvas of 2 x 2 samples per pixel, then averaged into the [`Image`].
 //! Input that cannot be drawn (faces with missing or infinite vertices, empty shapes) leaves white paper.
 
