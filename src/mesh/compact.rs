@@ -35,7 +35,7 @@ impl Renumbering {
 
     /// The new id of a half-edge.
     pub fn half_edge(&self, h: HalfEdgeId) -> Option<HalfEdgeId> {
-        self.lookup(&self.edges, h.edge() as usize).map(|e| HalfEdgeId(2 * e | (h.0 & 1)))
+        self.lookup(&self.edges, h.edge() as usize).map(|e| HalfEdgeId((2 * e) | (h.0 & 1)))
     }
 
     /// The new id of a face or boundary loop.

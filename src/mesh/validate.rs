@@ -55,7 +55,7 @@ impl Mesh {
     }
 
     fn validate_half_edges(&self) -> Result<(), Violation> {
-        require!(self.half_edges.len() % 2 == 0, "odd number of half-edges");
+        require!(self.half_edges.len().is_multiple_of(2), "odd number of half-edges");
         for id in 0..self.half_edges.len() as u32 {
             let h = HalfEdgeId(id);
             let record = self.half_edges[h.index()];
