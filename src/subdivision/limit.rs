@@ -19,12 +19,19 @@ pub struct LimitPoint {
 impl LimitPoint {
     /// The unit normal, or `None` where the tangents do not span a plane.
     pub fn normal(&self) -> Option<DVec3> {
+        let noise = ROUNDING * self.position.abs().max_element();
+        if self.tangents.iter().any(|tangent| tangent.abs().max_element() <= noise) {
+            return None;
+        }
         let [first, second] = self.tangents.map(scaled);
         let cross = first.cross(second);
         let length = cross.length();
         (length > PARALLEL * first.length() * second.length()).then(|| cross / length)
     }
 }
+
+/// Tangents shorter than this part of the coordinates are left over from the rounding of differences.
+const ROUNDING: f64 = 4.0 * f64::EPSILON;
 
 /// Tangents whose angle is below this (radians) are taken for parallel.
 const PARALLEL: f64 = 1e-12;

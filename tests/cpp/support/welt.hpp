@@ -1,0 +1,35 @@
+// Owning handles of the C ABI, and arrays in place of pointers and counts.
+#pragma once
+
+#include "obj.hpp"
+
+#include <welt.h>
+
+#include <memory>
+#include <stdexcept>
+
+struct Free {
+    void operator()(welt_mesh* mesh) const { welt_mesh_free(mesh); }
+    void operator()(welt_refinement* refinement) const { welt_refinement_free(refinement); }
+};
+using Mesh = std::unique_ptr<welt_mesh, Free>;
+using Refinement = std::unique_ptr<welt_refinement, Free>;
+
+// The polygons are no surface.
+struct Refused : std::runtime_error {
+    using std::runtime_error::runtime_error;
+};
+
+// One level of a refinement.
+struct Level {
+    std::vector<Vector> positions;
+    std::vector<std::uint32_t> face_vertices;
+    // Face of the level before and its corner, per face; empty on level 0.
+    std::vector<std::uint32_t> parent_faces, parent_corners;
+};
+
+// Throws Refused for WELT_ERROR_MESH, std::runtime_error for every other failure, as do the functions below.
+Mesh make_mesh(Polygons const& polygons);
+std::vector<Level> refine(Mesh const& mesh, unsigned depth);
+std::vector<Vector> limit_positions(Mesh const& mesh);
+std::vector<Vector> limit_normals(Mesh const& mesh);
