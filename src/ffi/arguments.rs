@@ -2,7 +2,7 @@
 
 use super::failure::Failure;
 use super::status::WELT_ERROR_BUFFER;
-use std::mem::MaybeUninit;
+use std::ffi::{CStr, c_char};
 
 fn check<T>(pointer: *const T, name: &str) -> Result<(), Failure> {
     if pointer.is_null() {
@@ -78,6 +78,22 @@ pub(super) unsafe fn array<'a, T>(pointer: *const T, count: usize, name: &str) -
     Ok(unsafe { std::slice::from_raw_parts(pointer, count) })
 }
 
+/// A string of `length` bytes, or up to its NUL when the length is `usize::MAX`.
+///
+/// # Safety
+/// `pointer` is NULL or the start of such a string, which nobody changes while the slice is used.
+pub(super) unsafe fn text<'a>(pointer: *const c_char, length: usize, name: &str) -> Result<&'a str, Failure> {
+    let bytes = if length == usize::MAX {
+        check(pointer, name)?;
+        // SAFETY: not NULL; the caller answers for the NUL at the end.
+        unsafe { CStr::from_ptr(pointer) }.to_bytes()
+    } else {
+        // SAFETY: as for this function.
+        unsafe { array(pointer.cast::<u8>(), length, name) }?
+    };
+    std::str::from_utf8(bytes).map_err(|error| Failure::argument(format!("{name} is not UTF-8: {error}")))
+}
+
 /// Points whose coordinates are `stride` bytes apart from point to point; 0 means that nothing lies between them.
 ///
 /// # Safety
@@ -117,6 +133,18 @@ impl<T> Output<T> {
         Ok(Self(pointer))
     }
 
+    /// A place that may be left out.
+    ///
+    /// # Safety
+    /// As for [`new`](Self::new).
+    pub(super) unsafe fn optional(pointer: *mut T, name: &str) -> Result<Option<Self>, Failure> {
+        if pointer.is_null() {
+            return Ok(None);
+        }
+        // SAFETY: as for this function.
+        unsafe { Self::new(pointer, name) }.map(Some)
+    }
+
     pub(super) fn set(self, value: T) {
         // SAFETY: whoever made `self` answers for the pointer. `write` because what is there may be uninitialised.
         unsafe { self.0.write(value) };
@@ -130,14 +158,18 @@ impl<T> Output<*mut T> {
     }
 }
 
-/// The caller's buffer for an array of results.
-pub(super) struct Buffer<'a, T>(&'a mut [MaybeUninit<T>]);
+/// The caller's buffer for an array of results. No reference to it is made, since it may be uninitialised, and a careless
+/// caller may pass the same buffer twice.
+pub(super) struct Buffer<T> {
+    start: *mut T,
+    count: usize,
+}
 
-impl<T: Copy> Buffer<'_, T> {
+impl<T: Copy> Buffer<T> {
     /// A buffer that has room for the `needed` elements.
     ///
     /// # Safety
-    /// `pointer` is NULL or the start of room for `capacity` elements that nobody else uses during the call.
+    /// `pointer` is NULL or the start of room for `capacity` elements, until the end of the call.
     pub(super) unsafe fn new(
         pointer: *mut T,
         capacity: usize,
@@ -150,19 +182,17 @@ impl<T: Copy> Buffer<'_, T> {
                 format!("{name} has room for {capacity} elements; {needed} are needed"),
             ));
         }
-        if needed == 0 {
-            return Ok(Self(&mut []));
+        if needed > 0 {
+            check(pointer, name)?;
         }
-        check(pointer, name)?;
-        check_length::<T>(needed, name)?;
-        // SAFETY: not NULL, aligned, within the address space; `MaybeUninit` asks nothing of the content.
-        Ok(Self(unsafe { std::slice::from_raw_parts_mut(pointer.cast(), needed) }))
+        Ok(Self { start: pointer, count: needed })
     }
 
     /// Writes the elements, as many as were said to be needed.
     pub(super) fn fill(self, elements: impl IntoIterator<Item = T>) {
-        for (slot, element) in self.0.iter_mut().zip(elements) {
-            slot.write(element);
+        for (i, element) in elements.into_iter().take(self.count).enumerate() {
+            // SAFETY: `i` is below the count, for whose room whoever made `self` answers.
+            unsafe { self.start.add(i).write(element) };
         }
     }
 }

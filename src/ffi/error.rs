@@ -2,11 +2,11 @@
 
 use super::arguments;
 use super::boundary::boundary_value;
-use super::failure::{Failure, Location};
+use super::failure::{Failure, Location, Place};
 use super::status::WELT_OK;
 use std::ffi::{CString, c_char};
 
-/// The place is the input as a whole.
+/// The place is no element of a mesh: the input as a whole, or a place in a text.
 pub const WELT_PLACE_WHOLE: u32 = 0;
 /// The place is a vertex; its first id is the vertex.
 pub const WELT_PLACE_VERTEX: u32 = 1;
@@ -28,6 +28,23 @@ pub struct WeltError {
 struct ErrorPlace {
     location: Location,
     message: CString,
+    file: CString,
+    line: u32,
+    column: u32,
+}
+
+impl From<Place> for ErrorPlace {
+    fn from(place: Place) -> Self {
+        let (file, line, column) =
+            place.text.map_or_else(Default::default, |text| (text.file, text.line, text.column));
+        Self {
+            location: place.location,
+            message: one_line(place.message),
+            file: one_line(file),
+            line,
+            column,
+        }
+    }
 }
 
 impl WeltError {
@@ -35,11 +52,7 @@ impl WeltError {
         Self {
             code: failure.code,
             message: one_line(failure.message),
-            places: failure
-                .places
-                .into_iter()
-                .map(|place| ErrorPlace { location: place.location, message: one_line(place.message) })
-                .collect(),
+            places: failure.places.into_iter().map(ErrorPlace::from).collect(),
         }
     }
 }
@@ -128,4 +141,26 @@ pub unsafe extern "C" fn welt_error_place_id(error: *const WeltError, index: usi
 pub unsafe extern "C" fn welt_error_place_message(error: *const WeltError, index: usize) -> *const c_char {
     // SAFETY: the header asks for NULL or a living error.
     unsafe { look(error, c"".as_ptr(), |error| Some(error.places.get(index)?.message.as_ptr())) }
+}
+
+/// The file in which place number index is: UTF-8, NUL-terminated, valid until the error is freed. Empty where the place is in
+/// no file, or there is no such place. Since: 0.1.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn welt_error_place_file(error: *const WeltError, index: usize) -> *const c_char {
+    // SAFETY: the header asks for NULL or a living error.
+    unsafe { look(error, c"".as_ptr(), |error| Some(error.places.get(index)?.file.as_ptr())) }
+}
+
+/// The line of place number index, 1-based; 0 where there is none. Since: 0.1.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn welt_error_place_line(error: *const WeltError, index: usize) -> u32 {
+    // SAFETY: the header asks for NULL or a living error.
+    unsafe { look(error, 0, |error| Some(error.places.get(index)?.line)) }
+}
+
+/// The column of place number index in bytes, 1-based; 0 where there is none. Since: 0.1.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn welt_error_place_column(error: *const WeltError, index: usize) -> u32 {
+    // SAFETY: the header asks for NULL or a living error.
+    unsafe { look(error, 0, |error| Some(error.places.get(index)?.column)) }
 }

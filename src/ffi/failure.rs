@@ -1,6 +1,7 @@
 //! Why a call failed, before it becomes an error handle.
 
 use super::status::*;
+use crate::io::{ExportError, ImportError};
 use crate::job::Cancelled;
 use crate::mesh::{Defect, Defects};
 use crate::subdivision::RefineError;
@@ -18,6 +19,16 @@ pub(super) struct Failure {
 pub(super) struct Place {
     pub(super) location: Location,
     pub(super) message: String,
+    /// Where the text of a file, if it comes from one, speaks of it.
+    pub(super) text: Option<TextPlace>,
+}
+
+/// A place in a text. Line and column are 1-based, the column in bytes; 0 where there is none.
+#[derive(Clone, Debug)]
+pub(super) struct TextPlace {
+    pub(super) file: String,
+    pub(super) line: u32,
+    pub(super) column: u32,
 }
 
 /// Where a place is. Numbers of elements are 0-based.
@@ -40,29 +51,72 @@ impl Failure {
     }
 }
 
+impl Place {
+    pub(super) fn vertex(vertex: u32, message: impl Into<String>) -> Self {
+        Self { location: Location::Vertex(vertex), message: message.into(), text: None }
+    }
+}
+
+impl From<&Defect> for Place {
+    fn from(defect: &Defect) -> Self {
+        let location = match *defect {
+            Defect::SizeMismatch { .. } | Defect::TooLarge { .. } => Location::Whole,
+            Defect::TooFewVertices { face, .. }
+            | Defect::VertexOutOfRange { face, .. }
+            | Defect::RepeatedVertex { face, .. } => Location::Face(face),
+            Defect::NotFinite { vertex } | Defect::SeparateFans { vertex, .. } => Location::Vertex(vertex),
+            Defect::EdgeWithManyFaces { edge, .. } | Defect::InconsistentOrientation { edge, .. } => {
+                Location::Edge(edge.0, edge.1)
+            }
+        };
+        Self { location, message: defect.to_string(), text: None }
+    }
+}
+
 impl From<Defects> for Failure {
     fn from(defects: Defects) -> Self {
-        let place = |defect: &Defect| Place {
-            message: defect.to_string(),
-            location: match *defect {
-                Defect::SizeMismatch { .. } | Defect::TooLarge { .. } => Location::Whole,
-                Defect::TooFewVertices { face, .. }
-                | Defect::VertexOutOfRange { face, .. }
-                | Defect::RepeatedVertex { face, .. } => Location::Face(face),
-                Defect::NotFinite { vertex } | Defect::SeparateFans { vertex, .. } => {
-                    Location::Vertex(vertex)
-                }
-                Defect::EdgeWithManyFaces { edge, .. } | Defect::InconsistentOrientation { edge, .. } => {
-                    Location::Edge(edge.0, edge.1)
-                }
-            },
-        };
         let code = match defects.0.as_slice() {
             [Defect::TooLarge { .. }] => WELT_ERROR_TOO_LARGE,
             [Defect::SizeMismatch { .. }] => WELT_ERROR_ARGUMENT,
             _ => WELT_ERROR_MESH,
         };
-        Self { code, message: defects.to_string(), places: defects.0.iter().map(place).collect() }
+        Self { code, message: defects.to_string(), places: defects.0.iter().map(Place::from).collect() }
+    }
+}
+
+impl From<ImportError> for Failure {
+    fn from(error: ImportError) -> Self {
+        let message = error.to_string();
+        match error {
+            ImportError::Unreadable { .. } | ImportError::UnknownFormat { .. } => {
+                Self::new(WELT_ERROR_FILE, message)
+            }
+            ImportError::WeldDistance { .. } => Self::argument(message),
+            ImportError::Text { file, line, column, message: what, .. } => {
+                let text = Some(TextPlace { file, line, column });
+                let places = vec![Place { location: Location::Whole, message: what, text }];
+                Self { code: WELT_ERROR_SYNTAX, message, places }
+            }
+            ImportError::Binary { file, message: what, .. } => {
+                let text = Some(TextPlace { file, line: 0, column: 0 });
+                let places = vec![Place { location: Location::Whole, message: what, text }];
+                Self { code: WELT_ERROR_SYNTAX, message, places }
+            }
+            ImportError::Defects { file, defects } => {
+                let place = |located: &crate::io::LocatedDefect| {
+                    let line = located.lines.first().copied().unwrap_or(0);
+                    let text = Some(TextPlace { file: file.clone(), line, column: 0 });
+                    Place { text, ..Place::from(&located.defect) }
+                };
+                Self { code: WELT_ERROR_MESH, message, places: defects.iter().map(place).collect() }
+            }
+        }
+    }
+}
+
+impl From<ExportError> for Failure {
+    fn from(error: ExportError) -> Self {
+        Self::new(WELT_ERROR_FILE, error.to_string())
     }
 }
 

@@ -3,7 +3,7 @@
 use super::arguments::{self, Buffer, Output};
 use super::boundary::{Guarded, boundary, boundary_value};
 use super::error::WeltError;
-use super::failure::{Failure, Location, Place};
+use super::failure::{Failure, Place};
 use super::status::WELT_ERROR_MESH;
 use crate::mesh::{Mesh, Polygons, VertexId};
 use glam::DVec3;
@@ -179,13 +179,11 @@ pub unsafe extern "C" fn welt_mesh_set_positions(
     error: *mut *mut WeltError,
 ) -> i32 {
     let body = || {
-        // SAFETY: the header asks for a living mesh that nobody else uses, and an array of this count.
-        let (mesh, positions) = unsafe {
-            (
-                arguments::handle_mut(mesh, "mesh")?,
-                arguments::points(positions, vertex_count, stride, "positions")?,
-            )
-        };
+        // SAFETY: the header asks for an array of this count.
+        let positions = unsafe { arguments::points(positions, vertex_count, stride, "positions") }?;
+        // SAFETY: the header asks for a living mesh that nobody else uses. The positions, which may have been a view of
+        // it, are copied by now.
+        let mesh = unsafe { arguments::handle_mut(mesh, "mesh") }?;
         let expected = mesh.read()?.vertex_bound();
         if vertex_count != expected {
             return Err(Failure::argument(format!(
@@ -210,7 +208,7 @@ fn check_finite(positions: &[DVec3]) -> Result<(), Failure> {
         .iter()
         .enumerate()
         .filter(|(_, position)| !position.is_finite())
-        .map(|(id, _)| Place { location: Location::Vertex(id as u32), message: MESSAGE.to_owned() })
+        .map(|(id, _)| Place::vertex(id as u32, MESSAGE))
         .collect();
     if places.is_empty() {
         return Ok(());

@@ -1,8 +1,8 @@
 //! The C ABI: one file per handle, in the order of the sections of `include/welt.h`, which is generated from here.
 //!
 //! Every exported function does its work inside [`boundary`], so that no panic crosses into C, and takes its
-//! arguments through [`arguments`], which checks every pointer and count. These two files and the exported functions
-//! hold all `unsafe` code of the crate. What C readers need to know stands in the comments of the exported functions.
+//! arguments through [`arguments`] and [`options`], which check every pointer and count. These files and the exported
+//! functions hold all `unsafe` code of the crate. What C readers need to know stands in the comments of the exported functions.
 
 // The comments of exported functions become the header; its first page says what callers answer for.
 #![allow(clippy::missing_safety_doc)]
@@ -11,19 +11,24 @@ mod arguments;
 mod boundary;
 mod error;
 mod failure;
+mod file;
 mod job;
 mod limit;
 mod mesh;
+mod options;
 mod refinement;
+mod report;
 mod status;
 #[cfg(test)]
 mod tests;
 mod version;
 
 pub use error::*;
+pub use file::*;
 pub use job::*;
 pub use limit::*;
 pub use mesh::*;
 pub use refinement::*;
+pub use report::*;
 pub use status::*;
 pub use version::*;

@@ -16,3 +16,7 @@ pub const WELT_ERROR_BUFFER: i32 = -5;
 pub const WELT_ERROR_POISONED: i32 = -6;
 /// A defect of the library; the message says where. Please report it.
 pub const WELT_ERROR_INTERNAL: i32 = -7;
+/// A file cannot be read or written.
+pub const WELT_ERROR_FILE: i32 = -8;
+/// A text or a file cannot be understood: the places of the error have file, line and column.
+pub const WELT_ERROR_SYNTAX: i32 = -9;

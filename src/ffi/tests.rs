@@ -248,3 +248,89 @@ fn a_panic_is_an_error_and_poisons_what_was_being_changed() {
     assert!(sound.change(|_| -> Result<(), Failure> { Err(Failure::argument("no")) }).is_err());
     assert!(sound.read().is_ok());
 }
+
+/// Imports an OBJ from memory with the given options.
+fn import(
+    content: &str,
+    options: *const WeltImportOptions,
+    mesh: *mut *mut WeltMesh,
+    report: *mut *mut WeltReport,
+    error: *mut *mut WeltError,
+) -> i32 {
+    let (name, bytes) = (c"cage.obj".as_ptr(), content.as_ptr());
+    let size = content.len();
+    // SAFETY: pointers and lengths agree.
+    unsafe {
+        welt_mesh_import_memory(name, usize::MAX, WELT_FORMAT_OBJ, bytes, size, options, mesh, report, error)
+    }
+}
+
+#[test]
+fn files_in_memory() {
+    let (mut mesh, mut report, mut error) = (null_mut(), null_mut(), null_mut());
+    let triangle = "v 0 0 0\nv 1 0 0\nv 0 1 0\nvn 0 0 1\nf 1 2 3\n";
+    assert_eq!(import(triangle, null(), &mut mesh, &mut report, &mut error), WELT_OK);
+    // SAFETY: handles are made here and freed.
+    unsafe {
+        assert_eq!((welt_mesh_vertex_count(mesh), welt_mesh_face_count(mesh)), (3, 1));
+        let json = CStr::from_ptr(welt_report_json(report)).to_str().unwrap();
+        assert!(json.contains("normals"), "{json}");
+        welt_report_free(report);
+        let path = c"/no/such/folder/out.obj".as_ptr();
+        assert_eq!(welt_mesh_export_file(mesh, path, usize::MAX, &mut error), WELT_ERROR_FILE);
+        assert!(take(&mut error).1.contains("/no/such/folder"));
+        welt_mesh_free(mesh);
+    }
+    let broken = "v 0 0 0\nv 1 0 zero\n";
+    assert_eq!(import(broken, null(), &mut mesh, null_mut(), &mut error), WELT_ERROR_SYNTAX);
+    // SAFETY: `error` was written by the call.
+    unsafe {
+        assert_eq!(CStr::from_ptr(welt_error_place_file(error, 0)), c"cage.obj");
+        assert_eq!((welt_error_place_line(error, 0), welt_error_place_column(error, 0)), (2, 7));
+        welt_error_free(error);
+    }
+    let repeated = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 2\n";
+    assert_eq!(import(repeated, null(), &mut mesh, null_mut(), &mut error), WELT_ERROR_MESH);
+    // SAFETY: `error` was written by the call.
+    unsafe {
+        assert_eq!(welt_error_place_kind(error, 0), WELT_PLACE_FACE);
+        assert_eq!((welt_error_place_id(error, 0, 0), welt_error_place_line(error, 0)), (0, 4));
+        welt_error_free(error);
+    }
+}
+
+#[test]
+fn options_of_other_sizes_and_bad_strings_are_refused() {
+    let (mut mesh, mut error) = (null_mut(), null_mut());
+    let mut options = WeltImportOptions { struct_size: 0, repair: 7, weld: 7.0 };
+    let size = size_of::<WeltImportOptions>();
+    // SAFETY: the struct has these bytes, or the size is refused.
+    unsafe {
+        assert_eq!(welt_import_options_init(&mut options, size - 1), WELT_ERROR_ARGUMENT);
+        assert_eq!(welt_import_options_init(&mut options, size + 8), WELT_ERROR_ARGUMENT);
+        assert_eq!(welt_import_options_init(null_mut(), size), WELT_ERROR_ARGUMENT);
+        assert_eq!(options.repair, 7, "written by a call that failed");
+        assert_eq!(welt_import_options_init(&mut options, size), WELT_OK);
+    }
+    assert_eq!((options.struct_size as usize, options.repair, options.weld), (size, 0, -1.0));
+    options.struct_size = 8;
+    let text = "v 0 0 0\n";
+    assert_eq!(import(text, &options, &mut mesh, null_mut(), &mut error), WELT_ERROR_ARGUMENT);
+    assert!(take(&mut error).1.contains("size of the options is 8 bytes"));
+    options.struct_size = size as u32;
+    options.weld = f64::NAN;
+    assert_eq!(import(text, &options, &mut mesh, null_mut(), &mut error), WELT_ERROR_ARGUMENT);
+    assert!(take(&mut error).1.contains("welding distance"));
+    // SAFETY: strings and lengths agree.
+    unsafe {
+        let path = c"\xff.obj".as_ptr();
+        let read = welt_mesh_import_file;
+        assert_eq!(read(path, 5, null(), &mut mesh, null_mut(), &mut error), WELT_ERROR_ARGUMENT);
+        assert!(take(&mut error).1.contains("path is not UTF-8"));
+        assert_eq!(
+            read(c"absent.obj".as_ptr(), usize::MAX, null(), &mut mesh, null_mut(), &mut error),
+            WELT_ERROR_FILE
+        );
+        assert!(take(&mut error).1.contains("absent.obj: cannot be read"));
+    }
+}
