@@ -103,7 +103,17 @@ extern "C" {
 #define WELT_ERROR_INTERNAL -7
 
 /*
- The place is the input as a whole.
+ A file cannot be read or written.
+ */
+#define WELT_ERROR_FILE -8
+
+/*
+ A text or a file cannot be understood: the places of the error have file, line and column.
+ */
+#define WELT_ERROR_SYNTAX -9
+
+/*
+ The place is no element of a mesh: the input as a whole, or a place in a text.
  */
 #define WELT_PLACE_WHOLE 0
 
@@ -126,6 +136,16 @@ extern "C" {
  The id that stands for "none".
  */
 #define WELT_NONE 4294967295
+
+/*
+ Wavefront OBJ.
+ */
+#define WELT_FORMAT_OBJ 0
+
+/*
+ PLY, ascii or binary.
+ */
+#define WELT_FORMAT_PLY 1
 
 /*
  The vertex stands for a vertex of the level before.
@@ -163,6 +183,30 @@ typedef struct welt_mesh welt_mesh;
  not depend on the mesh after it was made.
  */
 typedef struct welt_refinement welt_refinement;
+
+/*
+ What a call did, beyond its result. Never changes.
+ */
+typedef struct welt_report welt_report;
+
+/*
+ How a file is taken over. Set it by welt_import_options_init, then change what differs.
+ */
+typedef struct {
+    /*
+     Set by welt_import_options_init; leave it.
+     */
+    uint32_t struct_size;
+    /*
+     Not 0: split apart, turn round or remove what cannot be held, instead of refusing the file. Default 0.
+     */
+    uint32_t repair;
+    /*
+     Merge vertices that are no further apart than this distance, in the unit of the file; 0 merges equal ones, a
+     negative number none. Default -1.
+     */
+    double weld;
+} welt_import_options;
 
 /*
  The version of the library that runs, in the form of WELT_VERSION. It can differ from that of the header when the
@@ -224,6 +268,24 @@ const char *welt_error_place_message(const welt_error *error,
                                      size_t index);
 
 /*
+ The file in which place number index is: UTF-8, NUL-terminated, valid until the error is freed. Empty where the place is in
+ no file, or there is no such place. Since: 0.1.
+ */
+WELT_API
+const char *welt_error_place_file(const welt_error *error,
+                                  size_t index);
+
+/*
+ The line of place number index, 1-based; 0 where there is none. Since: 0.1.
+ */
+WELT_API uint32_t welt_error_place_line(const welt_error *error, size_t index);
+
+/*
+ The column of place number index in bytes, 1-based; 0 where there is none. Since: 0.1.
+ */
+WELT_API uint32_t welt_error_place_column(const welt_error *error, size_t index);
+
+/*
  Makes a job. job: receives the handle; free it with welt_job_free after every call that uses it has returned.
  Since: 0.1.
  */
@@ -255,6 +317,17 @@ WELT_API
 size_t welt_job_stage(const welt_job *job,
                       char *buffer,
                       size_t capacity);
+
+/*
+ Frees a report. NULL is allowed. Since: 0.1.
+ */
+WELT_API void welt_report_free(welt_report *report);
+
+/*
+ The report as JSON, UTF-8, NUL-terminated, valid until the report is freed. Empty where report is NULL. Since: 0.1.
+ */
+WELT_API
+const char *welt_report_json(const welt_report *report);
 
 /*
  Makes a mesh of polygons.
@@ -357,6 +430,76 @@ int32_t welt_mesh_faces(const welt_mesh *mesh,
                         uint32_t *face_vertices,
                         size_t face_vertex_capacity,
                         welt_error **error);
+
+/*
+ Sets options to their defaults. options: must not be NULL. size: sizeof *options. Fails with WELT_ERROR_ARGUMENT where the
+ size is none that the library knows, which is so when the program was compiled for a newer one. Since: 0.1.
+ */
+WELT_API
+int32_t welt_import_options_init(welt_import_options *options,
+                                 size_t size);
+
+/*
+ Reads a mesh from a file, OBJ or PLY by its extension.
+
+ path: UTF-8.
+ path_length: in bytes, SIZE_MAX for a NUL-terminated path.
+ options: may be NULL for defaults.
+ mesh: receives the handle; free it with welt_mesh_free.
+ report: may be NULL; else receives what the file holds and the mesh does not ("ignored") and what was changed ("repairs");
+ free it with welt_report_free.
+
+ Fails with WELT_ERROR_FILE where the file cannot be read, WELT_ERROR_SYNTAX where it cannot be understood (the place
+ has the line), WELT_ERROR_MESH where the faces are no surface (each place has a defect and its line). Since: 0.1.
+ */
+WELT_API
+int32_t welt_mesh_import_file(const char *path,
+                              size_t path_length,
+                              const welt_import_options *options,
+                              welt_mesh **mesh,
+                              welt_report **report,
+                              welt_error **error);
+
+/*
+ Reads a mesh from the content of a file.
+
+ name: stands for the file in messages; UTF-8, NULL for "memory".
+ name_length: in bytes, SIZE_MAX for a NUL-terminated name.
+ format: one of WELT_FORMAT_*.
+ content: the bytes of the file; may be NULL when size is 0.
+ size: number of bytes.
+ options: may be NULL for defaults.
+ mesh: receives the handle; free it with welt_mesh_free.
+ report: as for welt_mesh_import_file.
+
+ Fails as welt_mesh_import_file does. Since: 0.1.
+ */
+WELT_API
+int32_t welt_mesh_import_memory(const char *name,
+                                size_t name_length,
+                                uint32_t format,
+                                const uint8_t *content,
+                                size_t size,
+                                const welt_import_options *options,
+                                welt_mesh **mesh,
+                                welt_report **report,
+                                welt_error **error);
+
+/*
+ Writes a mesh to a file, OBJ or PLY by its extension. A file that was there is replaced at the very end, so that it is as
+ it was before when writing fails.
+
+ mesh: must not be NULL.
+ path: UTF-8.
+ path_length: in bytes, SIZE_MAX for a NUL-terminated path.
+
+ Fails with WELT_ERROR_FILE. Since: 0.1.
+ */
+WELT_API
+int32_t welt_mesh_export_file(const welt_mesh *mesh,
+                              const char *path,
+                              size_t path_length,
+                              welt_error **error);
 
 /*
  Writes the point of the limit surface that belongs to each vertex. A vertex without a face stays where it is.

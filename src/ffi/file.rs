@@ -31,7 +31,9 @@ pub struct WeltImportOptions {
 
 // SAFETY: `repr(C)`, 4 + 4 + 8 bytes without padding, of integers and a double.
 unsafe impl Options for WeltImportOptions {
-    const FIRST_SIZE: usize = 16;
+    fn first_size() -> usize {
+        16
+    }
 
     fn defaults(struct_size: u32) -> Self {
         Self { struct_size, repair: 0, weld: -1.0 }

@@ -11,17 +11,17 @@ use super::failure::Failure;
 /// The type is `repr(C)`, begins with `struct_size: u32`, has no padding, and every pattern of bits is a value of it.
 pub(super) unsafe trait Options: Copy {
     /// Size of the first version that was ever released.
-    const FIRST_SIZE: usize;
+    fn first_size() -> usize;
 
     /// The defaults, for a caller whose struct has `struct_size` bytes.
     fn defaults(struct_size: u32) -> Self;
 }
 
 fn check_size<T: Options>(size: usize) -> Result<usize, Failure> {
-    if (T::FIRST_SIZE..=size_of::<T>()).contains(&size) {
+    if (T::first_size()..=size_of::<T>()).contains(&size) {
         return Ok(size);
     }
-    let (first, last) = (T::FIRST_SIZE, size_of::<T>());
+    let (first, last) = (T::first_size(), size_of::<T>());
     Err(Failure::argument(format!(
         "the size of the options is {size} bytes; this version of the library knows sizes from {first} to {last}"
     )))
