@@ -18,6 +18,10 @@ impl Refinement {
         assert_eq!(positions.len(), level.vertex_count(), "one position per vertex");
         let [vertex_count, ..] = level.child_counts();
         next.clear();
+        if next.capacity() < vertex_count as usize {
+            // Growing would copy what is to be overwritten.
+            *next = Vec::new();
+        }
         next.resize(vertex_count as usize, DVec3::ZERO);
         let (vertex_points, rest) = next.split_at_mut(level.vertex_count());
         let (edge_points, face_points) = rest.split_at_mut(level.edge_count());

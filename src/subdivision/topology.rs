@@ -132,13 +132,12 @@ impl Level {
         let inner = 2 * self.edge_count;
         let vertices = self.corner_vertices.as_chunks::<4>().0;
         let half_edges = self.corner_half_edges.as_chunks::<4>().0;
-        let faces = vertices.iter().zip(half_edges).zip(face_point..);
-        child.corner_vertices.extend(faces.flat_map(|((v, h), f)| {
+        for ((v, h), f) in vertices.iter().zip(half_edges).zip(face_point..) {
             let e = h.map(|h| edge_point + (h >> 1));
-            [[v[0], e[0], f, e[3]], [v[1], e[1], f, e[0]], [v[2], e[2], f, e[1]], [v[3], e[3], f, e[2]]]
-                .into_iter()
-                .flatten()
-        }));
+            let quads =
+                [[v[0], e[0], f, e[3]], [v[1], e[1], f, e[0]], [v[2], e[2], f, e[1]], [v[3], e[3], f, e[2]]];
+            child.corner_vertices.extend_from_slice(quads.as_flattened());
+        }
         if last {
             return;
         }
