@@ -1,11 +1,11 @@
 //! Reads OBJ files statement by statement, in one pass over the bytes.
 
 use super::sets::{SetStatement, Sets};
+use crate::io::Limits;
 use crate::io::error::ImportError;
-use crate::io::report::{IgnoredKind, ImportReport};
+use crate::io::report::{Ignored, IgnoredKind, ImportReport};
 use crate::io::source::{Lines, Source};
 use crate::io::text::{Cursor, Fault, Place, shown};
-use crate::io::Limits;
 use crate::mesh::Polygons;
 use glam::{DVec2, DVec3};
 
@@ -37,6 +37,7 @@ pub(super) struct Reader<'a> {
     pub(super) report: ImportReport,
     pub(super) lines: Lines,
     sets: Sets,
+    first_texcoord_line: Option<u32>,
     /// True once a statement of the format was seen.
     understood: bool,
     /// The largest vertex number (0-based) that a face or a tag named, and where a tag named its largest.
@@ -59,6 +60,7 @@ impl<'a> Reader<'a> {
             report: ImportReport::default(),
             lines: Lines::default(),
             sets: Sets::default(),
+            first_texcoord_line: None,
             understood: false,
             largest_vertex: None,
             largest_tag_vertex: None,
@@ -212,6 +214,7 @@ impl<'a> Reader<'a> {
         if values[2] != 0.0 {
             self.report.ignore(IgnoredKind::ThirdTextureCoordinate, line, || "vt".into());
         }
+        self.first_texcoord_line.get_or_insert(line);
         self.polygons.texcoords.push(DVec2::new(values[0], values[1]));
         Ok(())
     }
@@ -366,7 +369,7 @@ impl<'a> Reader<'a> {
             self.polygons.sets.clear();
             self.polygons.face_sets.clear();
         }
-        self.drop_missing_texcoords();
+        self.settle_texcoords();
         Ok(())
     }
 
@@ -385,23 +388,38 @@ impl<'a> Reader<'a> {
         self.fault("a face names a vertex that does not exist", RANGE_REMEDY)
     }
 
-    /// Corners may name texture coordinates that come later in the file, but not ones that never come.
-    fn drop_missing_texcoords(&mut self) {
+    /// Corners may name texture coordinates that come later in the file, but not ones that never come. A face keeps
+    /// its texture coordinates only when every corner has one.
+    fn settle_texcoords(&mut self) {
         let count = self.polygons.texcoords.len();
-        let mut corner = 0;
+        let mut start = 0;
         for (&size, &line) in self.polygons.face_sizes.iter().zip(&self.lines.faces) {
-            let end = corner + size as usize;
-            for texcoord in self.polygons.face_texcoords.get_mut(corner..end).unwrap_or_default() {
-                if *texcoord != NO_TEXCOORD && *texcoord as usize >= count {
-                    let number = u64::from(*texcoord) + 1;
-                    self.report.ignore(IgnoredKind::MissingTextureCoordinate, line, || number.to_string());
-                    *texcoord = NO_TEXCOORD;
-                }
+            let end = start + size as usize;
+            let corners = self.polygons.face_texcoords.get_mut(start..end).unwrap_or_default();
+            start = end;
+            for texcoord in corners.iter_mut().filter(|t| **t != NO_TEXCOORD && **t as usize >= count) {
+                let number = u64::from(*texcoord) + 1;
+                self.report.ignore(IgnoredKind::MissingTextureCoordinate, line, || number.to_string());
+                *texcoord = NO_TEXCOORD;
             }
-            corner = end;
+            let missing = corners.iter().filter(|&&texcoord| texcoord == NO_TEXCOORD).count();
+            if missing > 0 && missing < corners.len() {
+                self.report.ignore(IgnoredKind::PartialTextureCoordinates, line, || "f".into());
+                corners.fill(NO_TEXCOORD);
+            }
         }
         if self.polygons.face_texcoords.iter().all(|&texcoord| texcoord == NO_TEXCOORD) {
             self.polygons.face_texcoords.clear();
+            self.polygons.texcoords.clear();
+            if let Some(first_line) = self.first_texcoord_line {
+                let kind = IgnoredKind::UnusedTextureCoordinates;
+                self.report.ignore_all(Ignored {
+                    kind,
+                    count: count as u64,
+                    first_line,
+                    example: "vt".into(),
+                });
+            }
         }
     }
 }
