@@ -42,6 +42,7 @@ impl<'a> Cursor<'a> {
     }
 
     /// Where the next byte stands.
+    #[inline]
     pub(super) fn place(&self) -> Place {
         let column = u32::try_from(self.at - self.line_start).unwrap_or(u32::MAX - 1) + 1;
         Place { line: self.line, column }
@@ -52,10 +53,12 @@ impl<'a> Cursor<'a> {
         self.at
     }
 
+    #[inline]
     pub(super) fn peek(&self) -> Option<u8> {
         self.bytes.get(self.at).copied()
     }
 
+    #[inline]
     pub(super) fn advance(&mut self) {
         self.at += 1;
     }
@@ -70,11 +73,13 @@ impl<'a> Cursor<'a> {
         self.rest().len()
     }
 
+    #[inline]
     fn rest(&self) -> &'a [u8] {
         self.bytes.get(self.at..).unwrap_or_default()
     }
 
     /// Length of the line end at the next byte, 0 when there is none.
+    #[inline]
     fn line_end_at(&self, at: usize) -> usize {
         match self.bytes.get(at) {
             Some(b'\n') => 1,
@@ -91,6 +96,7 @@ impl<'a> Cursor<'a> {
     }
 
     /// Skips blanks and joined line ends; true when a token follows on the (joined) line.
+    #[inline]
     pub(super) fn next_token_on_line(&mut self) -> bool {
         loop {
             match self.peek() {
@@ -131,6 +137,7 @@ impl<'a> Cursor<'a> {
     }
 
     /// Reads up to the next blank, line end or joined line end; empty only at one of these.
+    #[inline]
     pub(super) fn token(&mut self) -> &'a [u8] {
         let start = self.at;
         loop {
@@ -156,6 +163,7 @@ impl<'a> Cursor<'a> {
     }
 
     /// True when the next byte ends a token.
+    #[inline]
     pub(super) fn is_token_end(&self) -> bool {
         match self.peek() {
             None | Some(b' ' | b'\t' | 0x0B | 0x0C | b'\n' | b'\r') => true,
@@ -165,6 +173,7 @@ impl<'a> Cursor<'a> {
     }
 
     /// Reads a number in any spelling (`1`, `+1.`, `.5`, `1e2`, `nan`). `Err` gives the token that is none.
+    #[inline]
     pub(super) fn number(&mut self) -> Result<f64, &'a [u8]> {
         let start = self.at;
         if let Some((value, length)) = exact_decimal(self.rest()) {
@@ -179,6 +188,7 @@ impl<'a> Cursor<'a> {
     }
 
     /// Reads an optional sign and decimal digits, saturating; `None` (and no byte read) when there is no digit.
+    #[inline]
     pub(super) fn integer(&mut self) -> Option<i64> {
         let rest = self.rest();
         let negative = rest.first() == Some(&b'-');
@@ -212,6 +222,7 @@ pub(super) fn shown(token: &[u8]) -> String {
 /// Reads a decimal number whose value one multiplication or division gives exactly rounded: at most 2^53 as an
 /// integer, scaled by at most 10^22 (Clinger 1990, "How to read floating point numbers accurately").
 /// `None` leaves the number to the general algorithm.
+#[inline]
 fn exact_decimal(bytes: &[u8]) -> Option<(f64, usize)> {
     const POWERS: [f64; 23] = [
         1e0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9, 1e10, 1e11, 1e12, 1e13, 1e14, 1e15, 1e16, 1e17,
