@@ -196,11 +196,16 @@ impl<'a> Cursor<'a> {
         let mut value: i64 = 0;
         let mut length = sign;
         while let Some(digit) = rest.get(length).map(|byte| byte.wrapping_sub(b'0')).filter(|&d| d < 10) {
-            value = value.saturating_mul(10).saturating_add(i64::from(digit));
+            // Wraps beyond 18 digits; then the value is not used.
+            value = value.wrapping_mul(10).wrapping_add(i64::from(digit));
             length += 1;
         }
         if length == sign {
             return None;
+        }
+        if length - sign > 18 {
+            let digits = rest[sign..length].iter().map(|byte| i64::from(byte - b'0'));
+            value = digits.fold(0, |value: i64, digit| value.saturating_mul(10).saturating_add(digit));
         }
         self.at += length;
         Some(if negative { -value } else { value })
@@ -235,25 +240,24 @@ fn exact_decimal(bytes: &[u8]) -> Option<(f64, usize)> {
     let mut at = start;
     let mut integer: u64 = 0;
     while let Some(d) = digit(at) {
-        if at - start >= MOST_DIGITS {
-            return None;
-        }
-        integer = integer * 10 + u64::from(d);
+        // Wraps beyond 19 digits; then the value is not used.
+        integer = integer.wrapping_mul(10).wrapping_add(u64::from(d));
         at += 1;
     }
     let mut digits = at - start;
     let mut exponent: i32 = 0;
     if bytes.get(at) == Some(&b'.') {
         at += 1;
+        let first = at;
         while let Some(d) = digit(at) {
-            if digits >= MOST_DIGITS {
-                return None;
-            }
-            integer = integer * 10 + u64::from(d);
+            integer = integer.wrapping_mul(10).wrapping_add(u64::from(d));
             at += 1;
-            digits += 1;
-            exponent -= 1;
         }
+        digits += at - first;
+        exponent = i32::try_from(first).ok()? - i32::try_from(at).ok()?;
+    }
+    if digits > MOST_DIGITS {
+        return None;
     }
     if digits == 0 || integer > 1 << 53 {
         return None;
@@ -295,12 +299,31 @@ mod tests {
             (".8e-001", 0.08),
             ("2.E1", 20.0),
             ("9007199254740993", 9007199254740992.0),
+            ("00000000000000000000.50", 0.5),
+            ("0.000000000000000000000000000001", 1e-30),
+            ("18446744073709551617", 18446744073709551616.0),
             ("1e-400", 0.0),
         ] {
             assert_eq!(Cursor::new(text.as_bytes()).number(), Ok(value), "{text}");
         }
         for text in ["3.1+e2", ".", "1e", "0x10", "1_0", "1,5", "--1", "e5", ""] {
             assert!(Cursor::new(text.as_bytes()).number().is_err(), "{text}");
+        }
+    }
+
+    #[test]
+    fn integers_saturate() {
+        for (text, value) in [
+            ("-12/3", Some(-12)),
+            ("+7", Some(7)),
+            ("000000000000000000000000012", Some(12)),
+            ("9223372036854775807", Some(i64::MAX)),
+            ("18446744073709551617", Some(i64::MAX)),
+            ("-99999999999999999999", Some(-i64::MAX)),
+            ("-", None),
+            ("x1", None),
+        ] {
+            assert_eq!(Cursor::new(text.as_bytes()).integer(), value, "{text}");
         }
     }
 
