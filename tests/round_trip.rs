@@ -223,6 +223,16 @@ fn a_file_is_replaced_whole_or_not_at_all() {
     assert_eq!(std::fs::read(&path).expect("the file"), before);
     assert_eq!(std::fs::read_dir(&folder).expect("the folder").count(), 1, "the temporary file is gone");
 
+    #[cfg(unix)]
+    {
+        let link = folder.join("link.obj");
+        std::os::unix::fs::symlink(&path, &link).expect("a link");
+        io::export(&link, &mesh).expect("a file behind a link");
+        assert!(std::fs::symlink_metadata(&link).expect("the link").is_symlink());
+        io::save(Path::new("/dev/null"), |out| std::io::Write::write_all(out, b"x"))
+            .expect("a device takes it");
+        assert!(!std::fs::metadata("/dev/null").expect("the device").is_file());
+    }
     let missing = io::export(&folder.join("none/chair.obj"), &mesh).expect_err("no folder").to_string();
     assert!(missing.contains("none does not exist; create it first"), "{missing}");
     let unknown = io::export(&folder.join("chair.stl"), &mesh).expect_err("no format").to_string();

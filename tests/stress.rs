@@ -166,7 +166,9 @@ fn limits_are_checked_while_reading() {
     let options = ImportOptions { limits, ..ImportOptions::default() };
     let triangle = "v 0 0 0\nv 1 0 0\nv 1 1 0\nf 1 2 3\n";
     assert!(import("a.obj", triangle.as_bytes(), &options).is_ok());
+    let long = format!("g {}\n", "x".repeat(5000));
     for (more, part) in [
+        (long.as_str(), "a.obj:5:5003: a name of 5000 bytes; use names of at most 4096 bytes"),
         ("v 0 0 0\n", "a.obj:5:2: more than 3 vertices; raise the limit"),
         ("f 1 2 3\n", "a.obj:5:2: more than 1 faces; raise the limit"),
     ] {

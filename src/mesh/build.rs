@@ -295,3 +295,57 @@ impl EdgeTable {
         defects
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::DVec3;
+
+    /// A closed double pyramid over `count` vertices, with its poles before or after them.
+    fn double_pyramid(count: u32, poles: [u32; 2], first: u32) -> Polygons {
+        let mut polygons = Polygons::new(vec![DVec3::ZERO; count as usize + 2], &[]);
+        for i in 0..count {
+            let (a, b) = (first + i, first + (i + 1) % count);
+            polygons.face_sizes.extend([3, 3]);
+            polygons.face_vertices.extend([poles[0], a, b, poles[1], b, a]);
+        }
+        polygons
+    }
+
+    #[test]
+    fn poles_of_any_valence_close() {
+        for count in [3, 15, 16, 17, 1000] {
+            for (poles, first) in [([0, 1], 2), ([count, count + 1], 0)] {
+                let mesh = Mesh::from_polygons(&double_pyramid(count, poles, first)).expect("a closed mesh");
+                mesh.validate().expect("valid");
+                assert_eq!(mesh.boundary_loops().count(), 0);
+                assert_eq!(mesh.edges().count(), 3 * count as usize);
+                assert_eq!(poles.map(|pole| mesh.valence(crate::mesh::VertexId(pole))), [count as usize; 2]);
+            }
+        }
+    }
+
+    #[test]
+    fn a_third_face_is_found_at_a_crowded_pole() {
+        let mut polygons = double_pyramid(1000, [0, 1], 2);
+        polygons.face_sizes.extend([3, 3]);
+        polygons.face_vertices.extend([0, 2, 500, 900, 0, 2]);
+        let found = Mesh::from_polygons(&polygons).expect_err("an edge with four faces");
+        let edge = Defect::EdgeWithManyFaces { edge: (0, 2), faces: vec![0, 1998, 2000, 2001] };
+        assert!(found.0.contains(&edge), "{found}");
+        for edge in [(0, 500), (0, 900)] {
+            let is_it = |d: &Defect| matches!(d, Defect::EdgeWithManyFaces { edge: e, .. } if *e == edge);
+            assert!(found.0.iter().any(is_it), "{found}");
+        }
+    }
+
+    #[test]
+    fn fans_are_counted_at_each_vertex() {
+        // Three triangles at vertex 0 and two at vertex 1, none of which share an edge.
+        let faces: [&[u32]; 4] = [&[0, 1, 2], &[0, 3, 4], &[0, 5, 6], &[1, 7, 8]];
+        let found = Mesh::from_polygons(&Polygons::new(vec![DVec3::ZERO; 9], &faces)).expect_err("fans");
+        let expected =
+            [Defect::SeparateFans { vertex: 0, fans: 3 }, Defect::SeparateFans { vertex: 1, fans: 2 }];
+        assert_eq!(found.0, expected);
+    }
+}

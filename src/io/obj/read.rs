@@ -8,6 +8,7 @@ use crate::io::source::{Lines, Source};
 use crate::io::text::{Cursor, Fault, Place, shown};
 use crate::mesh::Polygons;
 use glam::{DVec2, DVec3};
+use rustc_hash::FxHashSet;
 
 pub(super) type Result<T> = std::result::Result<T, Box<Fault>>;
 
@@ -15,7 +16,10 @@ pub(super) type Result<T> = std::result::Result<T, Box<Fault>>;
 const NO_TEXCOORD: u32 = u32::MAX;
 
 /// Bytes of a file per vertex or face, from below for usual files: what is reserved in advance.
-const BYTES_PER_ELEMENT: usize = 64;
+const BYTES_PER_ELEMENT: usize = 48;
+
+/// Longest name of a group, object, material, smoothing group or library, in bytes.
+const LONGEST_NAME: usize = 4096;
 
 /// Reads a whole file. `name` is used in messages.
 pub(in crate::io) fn read(
@@ -37,6 +41,8 @@ pub(super) struct Reader<'a> {
     pub(super) report: ImportReport,
     pub(super) lines: Lines,
     sets: Sets,
+    /// The material libraries named so far.
+    libraries: FxHashSet<String>,
     first_texcoord_line: Option<u32>,
     /// True once a statement of the format was seen.
     understood: bool,
@@ -60,6 +66,7 @@ impl<'a> Reader<'a> {
             report: ImportReport::default(),
             lines: Lines::default(),
             sets: Sets::default(),
+            libraries: FxHashSet::default(),
             first_texcoord_line: None,
             understood: false,
             largest_vertex: None,
@@ -249,6 +256,11 @@ impl<'a> Reader<'a> {
         self.lines.faces.push(line);
         let set = self.sets.index(&mut self.polygons);
         self.polygons.face_sets.push(set);
+        if self.sets.are_too_large() {
+            return Err(
+                self.fault("the names of groups and materials take too much memory", "use shorter names")
+            );
+        }
         Ok(())
     }
 
@@ -316,18 +328,22 @@ impl<'a> Reader<'a> {
         }
     }
 
-    fn name(&mut self, line: u32) -> String {
+    fn name(&mut self, line: u32) -> Result<String> {
         let words = self.text.words();
-        String::from_utf8(words).unwrap_or_else(|error| {
+        if words.len() > LONGEST_NAME {
+            let message = format!("a name of {} bytes", words.len());
+            return Err(self.fault(message, "use names of at most 4096 bytes"));
+        }
+        Ok(String::from_utf8(words).unwrap_or_else(|error| {
             let name = String::from_utf8_lossy(error.as_bytes()).into_owned();
             self.report.ignore(IgnoredKind::NamesNotUtf8, line, || shown(name.as_bytes()));
             name
-        })
+        }))
     }
 
     fn set(&mut self, statement: SetStatement, line: u32) -> Result<()> {
         self.understood = true;
-        let name = self.name(line);
+        let name = self.name(line)?;
         if let Some(unused) = self.sets.set(statement, name, line) {
             self.report.ignore(IgnoredKind::NamesWithoutFaces, unused, || format!("{statement:?}"));
         }
@@ -336,8 +352,8 @@ impl<'a> Reader<'a> {
 
     fn material_library(&mut self, line: u32) -> Result<()> {
         self.understood = true;
-        let name = self.name(line);
-        if !name.is_empty() && !self.polygons.material_libraries.contains(&name) {
+        let name = self.name(line)?;
+        if !name.is_empty() && self.libraries.insert(name.clone()) {
             self.polygons.material_libraries.push(name);
         }
         Ok(())
