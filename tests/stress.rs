@@ -33,7 +33,7 @@ const MESSAGES: [(&str, &str); 17] = [
     ("gen_nan_inf.obj", ":1:3: the coordinate NaN is not a finite number; write 'v x y z'"),
     ("gen_not_a_number.obj", ":1:3: 'a' is not a number; write 'v x y z' with three finite numbers"),
     ("as_number_formats.obj", ":11:14: '3.1+e2' is not a number; write"),
-    ("tol_issue-140-zero-face-idx.obj", ":15:3: a face names vertex 0, but"),
+    ("tol_issue-140-zero-face-idx.obj", ":16:3: a face names vertex 0, but"),
     ("gen_one_vertex_face.obj", "line 9: face 0 has 1 vertices; a face needs at least 3"),
     ("gen_two_vertex_face.obj", "line 9: face 0 has 2 vertices; a face needs at least 3"),
     ("tm_notenoughindices.obj", "line 9: face 0 has 2 vertices"),
@@ -166,7 +166,9 @@ fn limits_are_checked_while_reading() {
     let options = ImportOptions { limits, ..ImportOptions::default() };
     let triangle = "v 0 0 0\nv 1 0 0\nv 1 1 0\nf 1 2 3\n";
     assert!(import("a.obj", triangle.as_bytes(), &options).is_ok());
+    let long = format!("g {}\n", "x".repeat(5000));
     for (more, part) in [
+        (long.as_str(), "a.obj:5:5003: a name of 5000 bytes; use names of at most 4096 bytes"),
         ("v 0 0 0\n", "a.obj:5:2: more than 3 vertices; raise the limit"),
         ("f 1 2 3\n", "a.obj:5:2: more than 1 faces; raise the limit"),
     ] {
@@ -198,6 +200,8 @@ fn what_is_ignored_is_counted() {
         (IgnoredKind::UnknownKeywords, 1, 12),
         (IgnoredKind::NamesWithoutFaces, 2, 13),
         (IgnoredKind::MissingTextureCoordinate, 3, 15),
+        (IgnoredKind::PartialTextureCoordinates, 1, 15),
+        (IgnoredKind::UnusedTextureCoordinates, 1, 6),
         (IgnoredKind::Tags, 1, 16),
         (IgnoredKind::CreasesWithoutEdge, 1, 17),
     ];

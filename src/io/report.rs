@@ -19,6 +19,10 @@ pub enum IgnoredKind {
     ThirdTextureCoordinate,
     /// Corners that name a texture coordinate which is not in the file.
     MissingTextureCoordinate,
+    /// Faces with a texture coordinate at some of their corners only: they lose it.
+    PartialTextureCoordinates,
+    /// Texture coordinates in a file in which no face keeps any.
+    UnusedTextureCoordinates,
     /// Points (`p`).
     Points,
     /// Lines (`l`).
@@ -52,6 +56,8 @@ impl IgnoredKind {
             Self::ExtraNumbers => "vertices with extra numbers",
             Self::ThirdTextureCoordinate => "third texture coordinates",
             Self::MissingTextureCoordinate => "references to missing texture coordinates",
+            Self::PartialTextureCoordinates => "faces with texture coordinates at some corners only",
+            Self::UnusedTextureCoordinates => "texture coordinates that no face keeps",
             Self::Points => "point statements",
             Self::Lines => "line statements",
             Self::FreeFormGeometry => "curve and surface statements",
@@ -173,6 +179,11 @@ impl ImportReport {
             Some(entry) => entry.count += 1,
             None => self.ignored.push(Ignored { kind, count: 1, first_line: line, example: example() }),
         }
+    }
+
+    /// Notes a kind that is counted as a whole.
+    pub(super) fn ignore_all(&mut self, ignored: Ignored) {
+        self.ignored.push(ignored);
     }
 
     /// How often `kind` was ignored.

@@ -14,22 +14,38 @@ pub fn save(
     path: &Path,
     write: impl FnOnce(&mut BufWriter<File>) -> io::Result<()>,
 ) -> Result<(), ExportError> {
+    let failed = |source| ExportError::Unwritable { file: path.display().to_string(), source };
+    let before = fs::metadata(path).ok();
+    match &before {
+        Some(before) if before.is_dir() => {
+            return Err(failed(io::Error::new(io::ErrorKind::IsADirectory, "it is a folder")));
+        }
+        // A pipe or a device is written to; nothing may take its place.
+        Some(before) if !before.is_file() => {
+            return File::options()
+                .write(true)
+                .open(path)
+                .and_then(|handle| fill(handle, write))
+                .map(drop)
+                .map_err(failed);
+        }
+        _ => {}
+    }
+    // A link stays one: the file it leads to is the one that changes.
+    let path = &fs::canonicalize(path).unwrap_or_else(|_| path.to_path_buf());
     let folder = match path.parent() {
         Some(folder) if !folder.as_os_str().is_empty() => folder,
         _ => Path::new("."),
     };
-    let file = path.display().to_string();
     if !folder.is_dir() {
-        return Err(ExportError::FolderMissing { file, folder: folder.display().to_string() });
-    }
-    let failed = |source| ExportError::Unwritable { file: path.display().to_string(), source };
-    if path.is_dir() {
-        return Err(failed(io::Error::new(io::ErrorKind::IsADirectory, "it is a folder")));
+        let [file, folder] = [path, folder].map(|path| path.display().to_string());
+        return Err(ExportError::FolderMissing { file, folder });
     }
     let (temporary, handle) = create_temporary(folder, path).map_err(failed)?;
-    let result = fill(handle, write).and_then(|()| {
+    let result = fill(handle, write).and_then(|handle| {
+        handle.sync_all()?;
         // A file that is replaced keeps its permissions.
-        if let Ok(before) = fs::metadata(path) {
+        if let Some(before) = before {
             fs::set_permissions(&temporary, before.permissions())?;
         }
         fs::rename(&temporary, path)
@@ -41,11 +57,10 @@ pub fn save(
     })
 }
 
-fn fill(handle: File, write: impl FnOnce(&mut BufWriter<File>) -> io::Result<()>) -> io::Result<()> {
+fn fill(handle: File, write: impl FnOnce(&mut BufWriter<File>) -> io::Result<()>) -> io::Result<File> {
     let mut out = BufWriter::with_capacity(1 << 16, handle);
     write(&mut out)?;
-    out.flush()?;
-    out.get_ref().sync_all()
+    out.into_inner().map_err(io::IntoInnerError::into_error)
 }
 
 /// Creates a file that was not there, named after `path`.

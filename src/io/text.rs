@@ -42,6 +42,7 @@ impl<'a> Cursor<'a> {
     }
 
     /// Where the next byte stands.
+    #[inline]
     pub(super) fn place(&self) -> Place {
         let column = u32::try_from(self.at - self.line_start).unwrap_or(u32::MAX - 1) + 1;
         Place { line: self.line, column }
@@ -52,10 +53,12 @@ impl<'a> Cursor<'a> {
         self.at
     }
 
+    #[inline]
     pub(super) fn peek(&self) -> Option<u8> {
         self.bytes.get(self.at).copied()
     }
 
+    #[inline]
     pub(super) fn advance(&mut self) {
         self.at += 1;
     }
@@ -70,11 +73,13 @@ impl<'a> Cursor<'a> {
         self.rest().len()
     }
 
+    #[inline]
     fn rest(&self) -> &'a [u8] {
         self.bytes.get(self.at..).unwrap_or_default()
     }
 
     /// Length of the line end at the next byte, 0 when there is none.
+    #[inline]
     fn line_end_at(&self, at: usize) -> usize {
         match self.bytes.get(at) {
             Some(b'\n') => 1,
@@ -91,6 +96,7 @@ impl<'a> Cursor<'a> {
     }
 
     /// Skips blanks and joined line ends; true when a token follows on the (joined) line.
+    #[inline]
     pub(super) fn next_token_on_line(&mut self) -> bool {
         loop {
             match self.peek() {
@@ -131,6 +137,7 @@ impl<'a> Cursor<'a> {
     }
 
     /// Reads up to the next blank, line end or joined line end; empty only at one of these.
+    #[inline]
     pub(super) fn token(&mut self) -> &'a [u8] {
         let start = self.at;
         loop {
@@ -156,6 +163,7 @@ impl<'a> Cursor<'a> {
     }
 
     /// True when the next byte ends a token.
+    #[inline]
     pub(super) fn is_token_end(&self) -> bool {
         match self.peek() {
             None | Some(b' ' | b'\t' | 0x0B | 0x0C | b'\n' | b'\r') => true,
@@ -165,6 +173,7 @@ impl<'a> Cursor<'a> {
     }
 
     /// Reads a number in any spelling (`1`, `+1.`, `.5`, `1e2`, `nan`). `Err` gives the token that is none.
+    #[inline]
     pub(super) fn number(&mut self) -> Result<f64, &'a [u8]> {
         let start = self.at;
         if let Some((value, length)) = exact_decimal(self.rest()) {
@@ -179,6 +188,7 @@ impl<'a> Cursor<'a> {
     }
 
     /// Reads an optional sign and decimal digits, saturating; `None` (and no byte read) when there is no digit.
+    #[inline]
     pub(super) fn integer(&mut self) -> Option<i64> {
         let rest = self.rest();
         let negative = rest.first() == Some(&b'-');
@@ -186,11 +196,16 @@ impl<'a> Cursor<'a> {
         let mut value: i64 = 0;
         let mut length = sign;
         while let Some(digit) = rest.get(length).map(|byte| byte.wrapping_sub(b'0')).filter(|&d| d < 10) {
-            value = value.saturating_mul(10).saturating_add(i64::from(digit));
+            // Wraps beyond 18 digits; then the value is not used.
+            value = value.wrapping_mul(10).wrapping_add(i64::from(digit));
             length += 1;
         }
         if length == sign {
             return None;
+        }
+        if length - sign > 18 {
+            let digits = rest[sign..length].iter().map(|byte| i64::from(byte - b'0'));
+            value = digits.fold(0, |value: i64, digit| value.saturating_mul(10).saturating_add(digit));
         }
         self.at += length;
         Some(if negative { -value } else { value })
@@ -212,6 +227,7 @@ pub(super) fn shown(token: &[u8]) -> String {
 /// Reads a decimal number whose value one multiplication or division gives exactly rounded: at most 2^53 as an
 /// integer, scaled by at most 10^22 (Clinger 1990, "How to read floating point numbers accurately").
 /// `None` leaves the number to the general algorithm.
+#[inline]
 fn exact_decimal(bytes: &[u8]) -> Option<(f64, usize)> {
     const POWERS: [f64; 23] = [
         1e0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9, 1e10, 1e11, 1e12, 1e13, 1e14, 1e15, 1e16, 1e17,
@@ -224,25 +240,24 @@ fn exact_decimal(bytes: &[u8]) -> Option<(f64, usize)> {
     let mut at = start;
     let mut integer: u64 = 0;
     while let Some(d) = digit(at) {
-        if at - start >= MOST_DIGITS {
-            return None;
-        }
-        integer = integer * 10 + u64::from(d);
+        // Wraps beyond 19 digits; then the value is not used.
+        integer = integer.wrapping_mul(10).wrapping_add(u64::from(d));
         at += 1;
     }
     let mut digits = at - start;
     let mut exponent: i32 = 0;
     if bytes.get(at) == Some(&b'.') {
         at += 1;
+        let first = at;
         while let Some(d) = digit(at) {
-            if digits >= MOST_DIGITS {
-                return None;
-            }
-            integer = integer * 10 + u64::from(d);
+            integer = integer.wrapping_mul(10).wrapping_add(u64::from(d));
             at += 1;
-            digits += 1;
-            exponent -= 1;
         }
+        digits += at - first;
+        exponent = i32::try_from(first).ok()? - i32::try_from(at).ok()?;
+    }
+    if digits > MOST_DIGITS {
+        return None;
     }
     if digits == 0 || integer > 1 << 53 {
         return None;
@@ -284,12 +299,31 @@ mod tests {
             (".8e-001", 0.08),
             ("2.E1", 20.0),
             ("9007199254740993", 9007199254740992.0),
+            ("00000000000000000000.50", 0.5),
+            ("0.000000000000000000000000000001", 1e-30),
+            ("18446744073709551617", 18446744073709551616.0),
             ("1e-400", 0.0),
         ] {
             assert_eq!(Cursor::new(text.as_bytes()).number(), Ok(value), "{text}");
         }
         for text in ["3.1+e2", ".", "1e", "0x10", "1_0", "1,5", "--1", "e5", ""] {
             assert!(Cursor::new(text.as_bytes()).number().is_err(), "{text}");
+        }
+    }
+
+    #[test]
+    fn integers_saturate() {
+        for (text, value) in [
+            ("-12/3", Some(-12)),
+            ("+7", Some(7)),
+            ("000000000000000000000000012", Some(12)),
+            ("9223372036854775807", Some(i64::MAX)),
+            ("18446744073709551617", Some(i64::MAX)),
+            ("-99999999999999999999", Some(-i64::MAX)),
+            ("-", None),
+            ("x1", None),
+        ] {
+            assert_eq!(Cursor::new(text.as_bytes()).integer(), value, "{text}");
         }
     }
 

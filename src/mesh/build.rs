@@ -1,92 +1,77 @@
 //! Half-edges from face lists.
 //!
-//! Corners are bucketed by the smaller vertex of the edge that starts there, so that the two sides of an edge meet in
-//! a short bucket: linear time, no hashing, and edges are numbered by first use.
+//! One pass over the corners: each either completes an edge that an earlier face began or begins a new one, so that
+//! edges are numbered by first use. The edges of a vertex form a short list, kept at the smaller vertex of each; where
+//! a list would grow long (a pole), a hash table takes over: linear time whatever the faces.
 
 use super::defect::{Defect, Defects};
 use super::ids::{FaceId, NONE};
 use super::polygons::Polygons;
 use super::{HalfEdge, Mesh};
+use rustc_hash::FxHashMap;
 
-/// Buckets longer than this are sorted before they are paired: a pole of a million triangles must not cost its square.
-const LONG_BUCKET: usize = 24;
+/// Edges per vertex that are kept in a list: a pole of a million triangles must not cost its square.
+const LONGEST_LIST: u32 = 16;
 
 impl Mesh {
     /// Builds the mesh. Vertex and face numbers are those of `polygons`; vertices without a face are kept.
     ///
     /// # Errors
-    /// Every [`Defect`] found, each with the numbers of the elements it concerns.
+    /// Every [`Defect`] found, each with the numbers of the elements it concerns. Fans that meet in a vertex are looked
+    /// for only when edges are in order, and these only when the faces are.
     pub fn from_polygons(polygons: &Polygons) -> Result<Self, Defects> {
-        let mut defects = check_arrays(polygons);
+        let defects = check_arrays(polygons);
         if !defects.is_empty() {
             return Err(Defects(defects));
         }
-        let corner_count = polygons.face_vertices.len();
-        let mut mesh = Self {
-            positions: polygons.positions.clone(),
-            vertices: vec![NONE; polygons.positions.len()],
-            ..Self::default()
-        };
-        let corner_face = corner_faces(polygons);
-        let partner = pair_corners(polygons, &corner_face, &mut defects);
-        if !defects.is_empty() {
-            defects.sort();
-            return Err(Defects(defects));
-        }
-
-        // Number the edges by first use and fill in everything but the boundary loops.
-        let mut half_edge_of = vec![NONE; corner_count];
-        mesh.half_edges.reserve(corner_count + corner_count / 16);
-        for corner in 0..corner_count {
-            if half_edge_of[corner] != NONE {
-                continue;
-            }
-            let id = mesh.half_edges.len() as u32;
-            half_edge_of[corner] = id;
-            if partner[corner] != NONE {
-                half_edge_of[partner[corner] as usize] = id + 1;
-            }
-            mesh.half_edges.extend([HalfEdge::UNSET; 2]);
-        }
-        mesh.faces.reserve(polygons.face_sizes.len());
-        let mut start = 0;
-        for (face, vertices) in polygons.faces().enumerate() {
-            let size = vertices.len();
-            for (i, &vertex) in vertices.iter().enumerate() {
-                let id = half_edge_of[start + i];
-                mesh.half_edges[id as usize] = HalfEdge {
-                    next: half_edge_of[start + if i + 1 == size { 0 } else { i + 1 }],
-                    prev: half_edge_of[start + if i == 0 { size - 1 } else { i - 1 }],
-                    source: vertex,
-                    face: face as u32,
-                };
-                if mesh.vertices[vertex as usize] == NONE {
-                    mesh.vertices[vertex as usize] = id;
+        let mut edges = EdgeTable::new(polygons);
+        let mut vertices = vec![NONE; polygons.positions.len()];
+        let mut faces = Vec::with_capacity(polygons.face_sizes.len());
+        for (face, face_vertices) in polygons.faces().enumerate() {
+            let mut first = NONE;
+            let mut prev = NONE;
+            for (i, &vertex) in face_vertices.iter().enumerate() {
+                let target = face_vertices[if i + 1 == face_vertices.len() { 0 } else { i + 1 }];
+                let id = edges.half_edge(vertex, target, face as u32);
+                if prev == NONE {
+                    first = id;
+                } else {
+                    edges.link(prev, id);
+                }
+                prev = id;
+                if vertices[vertex as usize] == NONE {
+                    vertices[vertex as usize] = id;
                 }
             }
-            mesh.faces.push(half_edge_of[start]);
-            start += size;
+            edges.link(prev, first);
+            faces.push(first);
         }
-        mesh.first_new_face = mesh.faces.len() as u32;
-        mesh.close_boundaries();
+        let defects = edges.defects();
+        if !defects.is_empty() {
+            return Err(Defects(defects));
+        }
 
+        let mut mesh = Self {
+            half_edges: edges.half_edges,
+            positions: polygons.positions.clone(),
+            first_new_face: faces.len() as u32,
+            vertices,
+            faces,
+            ..Self::default()
+        };
+        mesh.close_boundaries();
         let fans = mesh.separate_fans();
         if !fans.is_empty() {
             return Err(Defects(fans));
         }
-        mesh.carry_data(polygons, &half_edge_of);
+        mesh.carry_data(polygons);
         Ok(mesh)
     }
 
     /// Gives every half-edge without a face its place in a boundary loop.
     fn close_boundaries(&mut self) {
-        for id in 0..self.half_edges.len() as u32 {
-            if self.half_edges[id as usize].source == NONE {
-                let mate = self.half_edges[(id ^ 1) as usize];
-                self.half_edges[id as usize].source = self.half_edges[mate.next as usize].source;
-            }
-        }
-        for id in 0..self.half_edges.len() as u32 {
+        // The first half-edge of a pair was made for a face: only the second can lie on a boundary.
+        for id in (1..self.half_edges.len() as u32).step_by(2) {
             if self.half_edges[id as usize].face != NONE {
                 continue;
             }
@@ -114,6 +99,7 @@ impl Mesh {
         }
     }
 
+    /// Vertices whose half-edges form several rings.
     /// Vertices whose half-edges form several rings.
     fn separate_fans(&self) -> Vec<Defect> {
         let ring = |start: u32| {
@@ -144,13 +130,15 @@ impl Mesh {
     }
 
     /// Takes over what travels with the faces and corners.
-    fn carry_data(&mut self, polygons: &Polygons, half_edge_of: &[u32]) {
-        if polygons.face_texcoords.len() == half_edge_of.len() && !polygons.texcoords.is_empty() {
+    fn carry_data(&mut self, polygons: &Polygons) {
+        if polygons.face_texcoords.len() == polygons.face_vertices.len() && !polygons.texcoords.is_empty() {
             self.texcoords = polygons.texcoords.clone();
-            self.corner_texcoords = vec![NONE; self.half_edges.len()];
-            for (corner, &id) in half_edge_of.iter().enumerate() {
-                self.corner_texcoords[id as usize] = polygons.face_texcoords[corner];
+            let mut corner_texcoords = vec![NONE; self.half_edges.len()];
+            let corners = self.faces().flat_map(|f| self.face_half_edges(f));
+            for (h, &texcoord) in corners.zip(&polygons.face_texcoords) {
+                corner_texcoords[h.index()] = texcoord;
             }
+            self.corner_texcoords = corner_texcoords;
         }
         if polygons.face_sets.len() == self.faces.len() {
             self.sets = polygons.sets.clone();
@@ -210,96 +198,154 @@ fn check_arrays(polygons: &Polygons) -> Vec<Defect> {
     defects
 }
 
-fn corner_faces(polygons: &Polygons) -> Vec<u32> {
-    let mut faces = Vec::with_capacity(polygons.face_vertices.len());
-    for (face, &size) in polygons.face_sizes.iter().enumerate() {
-        faces.resize(faces.len() + size as usize, face as u32);
-    }
-    faces
+/// The half-edges that the faces so far have made, and how to find them by their ends.
+struct EdgeTable {
+    /// `source` and `face` are set; `face` is `NONE` on the side that no face has claimed yet.
+    half_edges: Vec<HalfEdge>,
+    /// The last edge of which each vertex is the smaller end.
+    last_edge: Vec<u32>,
+    /// For each edge, the one before it in the list of its smaller end.
+    edge_before: Vec<u32>,
+    /// Edges whose smaller end has a full list, by (smaller, larger) end.
+    crowded: FxHashMap<(u32, u32), u32>,
+    /// Faces that found their edge taken: (edge, face).
+    conflicts: Vec<(u32, u32)>,
 }
 
-/// For each corner the corner on the other side of the edge that starts there, or `NONE` at a boundary.
-fn pair_corners(polygons: &Polygons, corner_face: &[u32], defects: &mut Vec<Defect>) -> Vec<u32> {
-    let corner_count = polygons.face_vertices.len();
-    // The edge at each corner: (smaller vertex, larger vertex), and whether the corner runs from the smaller one.
-    let mut ends = Vec::with_capacity(corner_count);
-    for vertices in polygons.faces() {
-        for (i, &a) in vertices.iter().enumerate() {
-            let b = vertices[if i + 1 == vertices.len() { 0 } else { i + 1 }];
-            ends.push((a, b));
+impl EdgeTable {
+    fn new(polygons: &Polygons) -> Self {
+        let corner_count = polygons.face_vertices.len();
+        // Enough for a mesh with few boundaries.
+        let half_edge_count = corner_count + corner_count / 16;
+        Self {
+            half_edges: Vec::with_capacity(half_edge_count),
+            last_edge: vec![NONE; polygons.positions.len()],
+            edge_before: Vec::with_capacity(half_edge_count / 2),
+            crowded: FxHashMap::default(),
+            conflicts: Vec::new(),
         }
     }
-    let mut starts = vec![0u32; polygons.positions.len() + 1];
-    for &(a, b) in &ends {
-        starts[a.min(b) as usize + 1] += 1;
-    }
-    for i in 1..starts.len() {
-        starts[i] += starts[i - 1];
-    }
-    let mut fill = starts.clone();
-    let mut entries = vec![(0u32, 0u32); corner_count];
-    for (corner, &(a, b)) in ends.iter().enumerate() {
-        let slot = &mut fill[a.min(b) as usize];
-        entries[*slot as usize] = (a.max(b), corner as u32);
-        *slot += 1;
-    }
-    let mut partner = vec![NONE; corner_count];
-    for bucket in starts.windows(2) {
-        let bucket = &mut entries[bucket[0] as usize..bucket[1] as usize];
-        if bucket.len() > LONG_BUCKET {
-            bucket.sort_unstable();
+
+    /// The half-edge from `a` to `b` with `face` on its left.
+    fn half_edge(&mut self, a: u32, b: u32, face: u32) -> u32 {
+        let (low, high) = (a.min(b), a.max(b));
+        let mut length = 0;
+        let mut edge = self.last_edge[low as usize];
+        while edge != NONE {
+            // All edges of the list have `low` as one end.
+            let pair = &self.half_edges[2 * edge as usize..2 * edge as usize + 2];
+            if pair[0].source ^ pair[1].source == low ^ high {
+                return self.claim(edge, a, face);
+            }
+            length += 1;
+            edge = self.edge_before[edge as usize];
         }
-        pair_bucket(bucket, &ends, corner_face, &mut partner, defects);
+        let new = (self.half_edges.len() / 2) as u32;
+        if length < LONGEST_LIST {
+            self.edge_before.push(std::mem::replace(&mut self.last_edge[low as usize], new));
+        } else if let Some(&known) = self.crowded.get(&(low, high)) {
+            return self.claim(known, a, face);
+        } else {
+            self.crowded.insert((low, high), new);
+            self.edge_before.push(NONE);
+        }
+        self.half_edges.push(HalfEdge { source: a, face, ..HalfEdge::UNSET });
+        self.half_edges.push(HalfEdge { source: b, ..HalfEdge::UNSET });
+        2 * new
     }
-    partner
+
+    /// Gives `face` the second side of an edge, which must be free and start at `a`.
+    fn claim(&mut self, edge: u32, a: u32, face: u32) -> u32 {
+        let second = &mut self.half_edges[2 * edge as usize + 1];
+        if second.face == NONE && second.source == a {
+            second.face = face;
+        } else {
+            // The tables are of no use from here on, but the other conflicts are to be found too.
+            self.conflicts.push((edge, face));
+        }
+        2 * edge + 1
+    }
+
+    fn link(&mut self, prev: u32, next: u32) {
+        self.half_edges[prev as usize].next = next;
+        self.half_edges[next as usize].prev = prev;
+    }
+
+    /// The edges that more than two faces claim, or two in the same direction; sorted.
+    fn defects(&mut self) -> Vec<Defect> {
+        self.conflicts.sort_unstable();
+        let mut defects: Vec<Defect> = self
+            .conflicts
+            .chunk_by(|x, y| x.0 == y.0)
+            .map(|group| {
+                let pair = [0, 1].map(|side| self.half_edges[2 * group[0].0 as usize + side]);
+                let [a, b] = pair.map(|half_edge| half_edge.source);
+                let edge = (a.min(b), a.max(b));
+                let owners = pair.into_iter().map(|half_edge| half_edge.face).filter(|&face| face != NONE);
+                let mut faces: Vec<u32> = owners.chain(group.iter().map(|conflict| conflict.1)).collect();
+                faces.sort_unstable();
+                if faces.len() == 2 {
+                    Defect::InconsistentOrientation { edge, faces }
+                } else {
+                    Defect::EdgeWithManyFaces { edge, faces }
+                }
+            })
+            .collect();
+        defects.sort();
+        defects
+    }
 }
 
-/// Pairs the corners of one bucket; entries of one edge are adjacent when the bucket is long (it is sorted then).
-fn pair_bucket(
-    bucket: &mut [(u32, u32)],
-    ends: &[(u32, u32)],
-    corner_face: &[u32],
-    partner: &mut [u32],
-    defects: &mut Vec<Defect>,
-) {
-    let sorted = bucket.len() > LONG_BUCKET;
-    for i in 0..bucket.len() {
-        let (large, corner) = bucket[i];
-        if large == NONE {
-            continue;
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::DVec3;
+
+    /// A closed double pyramid over `count` vertices, with its poles before or after them.
+    fn double_pyramid(count: u32, poles: [u32; 2], first: u32) -> Polygons {
+        let mut polygons = Polygons::new(vec![DVec3::ZERO; count as usize + 2], &[]);
+        for i in 0..count {
+            let (a, b) = (first + i, first + (i + 1) % count);
+            polygons.face_sizes.extend([3, 3]);
+            polygons.face_vertices.extend([poles[0], a, b, poles[1], b, a]);
         }
-        let same: smallvec::SmallVec<[u32; 4]> = if sorted {
-            bucket[i + 1..].iter().take_while(|entry| entry.0 == large).map(|entry| entry.1).collect()
-        } else {
-            bucket[i + 1..].iter().filter(|entry| entry.0 == large).map(|entry| entry.1).collect()
-        };
-        if same.is_empty() {
-            continue;
-        }
-        let opposite = ends[corner as usize].0 == ends[same[0] as usize].1;
-        if same.len() == 1 && opposite {
-            partner[corner as usize] = same[0];
-            partner[same[0] as usize] = corner;
-        } else {
-            let (a, b) = ends[corner as usize];
-            let edge = (a.min(b), large);
-            let mut faces: Vec<u32> = std::iter::once(corner)
-                .chain(same.iter().copied())
-                .map(|c| corner_face[c as usize])
-                .collect();
-            faces.sort_unstable();
-            defects.push(if same.len() == 1 {
-                Defect::InconsistentOrientation { edge, faces }
-            } else {
-                Defect::EdgeWithManyFaces { edge, faces }
-            });
-        }
-        for entry in &mut bucket[i + 1..] {
-            if entry.0 == large {
-                entry.0 = NONE;
-            } else if sorted {
-                break;
+        polygons
+    }
+
+    #[test]
+    fn poles_of_any_valence_close() {
+        for count in [3, 15, 16, 17, 1000] {
+            for (poles, first) in [([0, 1], 2), ([count, count + 1], 0)] {
+                let mesh = Mesh::from_polygons(&double_pyramid(count, poles, first)).expect("a closed mesh");
+                mesh.validate().expect("valid");
+                assert_eq!(mesh.boundary_loops().count(), 0);
+                assert_eq!(mesh.edges().count(), 3 * count as usize);
+                assert_eq!(poles.map(|pole| mesh.valence(crate::mesh::VertexId(pole))), [count as usize; 2]);
             }
         }
+    }
+
+    #[test]
+    fn a_third_face_is_found_at_a_crowded_pole() {
+        let mut polygons = double_pyramid(1000, [0, 1], 2);
+        polygons.face_sizes.extend([3, 3]);
+        polygons.face_vertices.extend([0, 2, 500, 900, 0, 2]);
+        let found = Mesh::from_polygons(&polygons).expect_err("an edge with four faces");
+        let edge = Defect::EdgeWithManyFaces { edge: (0, 2), faces: vec![0, 1998, 2000, 2001] };
+        assert!(found.0.contains(&edge), "{found}");
+        for edge in [(0, 500), (0, 900)] {
+            let is_it = |d: &Defect| matches!(d, Defect::EdgeWithManyFaces { edge: e, .. } if *e == edge);
+            assert!(found.0.iter().any(is_it), "{found}");
+        }
+    }
+
+    #[test]
+    fn fans_are_counted_at_each_vertex() {
+        // Three triangles at vertex 0 and two at vertex 1, none of which share an edge.
+        let faces: [&[u32]; 4] = [&[0, 1, 2], &[0, 3, 4], &[0, 5, 6], &[1, 7, 8]];
+        let found = Mesh::from_polygons(&Polygons::new(vec![DVec3::ZERO; 9], &faces)).expect_err("fans");
+        let expected =
+            [Defect::SeparateFans { vertex: 0, fans: 3 }, Defect::SeparateFans { vertex: 1, fans: 2 }];
+        assert_eq!(found.0, expected);
     }
 }

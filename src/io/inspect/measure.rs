@@ -156,6 +156,7 @@ struct Part {
     /// Orientable, and oriented as it is.
     orientable: bool,
     oriented: bool,
+    /// Six times the volume.
     volume: f64,
     origin: DVec3,
     /// Largest size of a coordinate difference, to tell a volume from rounding.
@@ -262,7 +263,7 @@ fn add_faces(polygons: &Polygons, topology: &Topology, part_of: &[u32], parts: &
         let place = |vertex: u32| polygons.positions[vertex as usize] - part.origin;
         let first = place(vertices[0]);
         for pair in vertices[1..].windows(2) {
-            part.volume += first.dot(place(pair[0]).cross(place(pair[1]))) / 6.0;
+            part.volume += first.dot(place(pair[0]).cross(place(pair[1])));
         }
         for &vertex in vertices {
             part.extent = part.extent.max(place(vertex).abs().max_element());
@@ -282,7 +283,7 @@ impl Part {
             component.genus = usize::try_from(twice / 2).ok();
             if self.oriented && component.boundaries == 0 {
                 let rounding = self.volume.abs() <= Self::NO_VOLUME * self.extent.powi(3);
-                component.volume = Some(if rounding { 0.0 } else { self.volume });
+                component.volume = Some(if rounding { 0.0 } else { self.volume / 6.0 });
             }
         }
         component

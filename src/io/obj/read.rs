@@ -3,11 +3,12 @@
 use super::sets::{SetStatement, Sets};
 use crate::io::Limits;
 use crate::io::error::ImportError;
-use crate::io::report::{IgnoredKind, ImportReport};
+use crate::io::report::{Ignored, IgnoredKind, ImportReport};
 use crate::io::source::{Lines, Source};
 use crate::io::text::{Cursor, Fault, Place, shown};
 use crate::mesh::Polygons;
 use glam::{DVec2, DVec3};
+use rustc_hash::FxHashSet;
 
 pub(super) type Result<T> = std::result::Result<T, Box<Fault>>;
 
@@ -15,7 +16,10 @@ pub(super) type Result<T> = std::result::Result<T, Box<Fault>>;
 const NO_TEXCOORD: u32 = u32::MAX;
 
 /// Bytes of a file per vertex or face, from below for usual files: what is reserved in advance.
-const BYTES_PER_ELEMENT: usize = 64;
+const BYTES_PER_ELEMENT: usize = 48;
+
+/// Longest name of a group, object, material, smoothing group or library, in bytes.
+const LONGEST_NAME: usize = 4096;
 
 /// Reads a whole file. `name` is used in messages.
 pub(in crate::io) fn read(
@@ -37,6 +41,9 @@ pub(super) struct Reader<'a> {
     pub(super) report: ImportReport,
     pub(super) lines: Lines,
     sets: Sets,
+    /// The material libraries named so far.
+    libraries: FxHashSet<String>,
+    first_texcoord_line: Option<u32>,
     /// True once a statement of the format was seen.
     understood: bool,
     /// The largest vertex number (0-based) that a face or a tag named, and where a tag named its largest.
@@ -59,6 +66,8 @@ impl<'a> Reader<'a> {
             report: ImportReport::default(),
             lines: Lines::default(),
             sets: Sets::default(),
+            libraries: FxHashSet::default(),
+            first_texcoord_line: None,
             understood: false,
             largest_vertex: None,
             largest_tag_vertex: None,
@@ -212,6 +221,7 @@ impl<'a> Reader<'a> {
         if values[2] != 0.0 {
             self.report.ignore(IgnoredKind::ThirdTextureCoordinate, line, || "vt".into());
         }
+        self.first_texcoord_line.get_or_insert(line);
         self.polygons.texcoords.push(DVec2::new(values[0], values[1]));
         Ok(())
     }
@@ -246,6 +256,11 @@ impl<'a> Reader<'a> {
         self.lines.faces.push(line);
         let set = self.sets.index(&mut self.polygons);
         self.polygons.face_sets.push(set);
+        if self.sets.are_too_large() {
+            return Err(
+                self.fault("the names of groups and materials take too much memory", "use shorter names")
+            );
+        }
         Ok(())
     }
 
@@ -313,18 +328,22 @@ impl<'a> Reader<'a> {
         }
     }
 
-    fn name(&mut self, line: u32) -> String {
+    fn name(&mut self, line: u32) -> Result<String> {
         let words = self.text.words();
-        String::from_utf8(words).unwrap_or_else(|error| {
+        if words.len() > LONGEST_NAME {
+            let message = format!("a name of {} bytes", words.len());
+            return Err(self.fault(message, "use names of at most 4096 bytes"));
+        }
+        Ok(String::from_utf8(words).unwrap_or_else(|error| {
             let name = String::from_utf8_lossy(error.as_bytes()).into_owned();
             self.report.ignore(IgnoredKind::NamesNotUtf8, line, || shown(name.as_bytes()));
             name
-        })
+        }))
     }
 
     fn set(&mut self, statement: SetStatement, line: u32) -> Result<()> {
         self.understood = true;
-        let name = self.name(line);
+        let name = self.name(line)?;
         if let Some(unused) = self.sets.set(statement, name, line) {
             self.report.ignore(IgnoredKind::NamesWithoutFaces, unused, || format!("{statement:?}"));
         }
@@ -333,8 +352,8 @@ impl<'a> Reader<'a> {
 
     fn material_library(&mut self, line: u32) -> Result<()> {
         self.understood = true;
-        let name = self.name(line);
-        if !name.is_empty() && !self.polygons.material_libraries.contains(&name) {
+        let name = self.name(line)?;
+        if !name.is_empty() && self.libraries.insert(name.clone()) {
             self.polygons.material_libraries.push(name);
         }
         Ok(())
@@ -366,7 +385,7 @@ impl<'a> Reader<'a> {
             self.polygons.sets.clear();
             self.polygons.face_sets.clear();
         }
-        self.drop_missing_texcoords();
+        self.settle_texcoords();
         Ok(())
     }
 
@@ -385,23 +404,38 @@ impl<'a> Reader<'a> {
         self.fault("a face names a vertex that does not exist", RANGE_REMEDY)
     }
 
-    /// Corners may name texture coordinates that come later in the file, but not ones that never come.
-    fn drop_missing_texcoords(&mut self) {
+    /// Corners may name texture coordinates that come later in the file, but not ones that never come. A face keeps
+    /// its texture coordinates only when every corner has one.
+    fn settle_texcoords(&mut self) {
         let count = self.polygons.texcoords.len();
-        let mut corner = 0;
+        let mut start = 0;
         for (&size, &line) in self.polygons.face_sizes.iter().zip(&self.lines.faces) {
-            let end = corner + size as usize;
-            for texcoord in self.polygons.face_texcoords.get_mut(corner..end).unwrap_or_default() {
-                if *texcoord != NO_TEXCOORD && *texcoord as usize >= count {
-                    let number = u64::from(*texcoord) + 1;
-                    self.report.ignore(IgnoredKind::MissingTextureCoordinate, line, || number.to_string());
-                    *texcoord = NO_TEXCOORD;
-                }
+            let end = start + size as usize;
+            let corners = self.polygons.face_texcoords.get_mut(start..end).unwrap_or_default();
+            start = end;
+            for texcoord in corners.iter_mut().filter(|t| **t != NO_TEXCOORD && **t as usize >= count) {
+                let number = u64::from(*texcoord) + 1;
+                self.report.ignore(IgnoredKind::MissingTextureCoordinate, line, || number.to_string());
+                *texcoord = NO_TEXCOORD;
             }
-            corner = end;
+            let missing = corners.iter().filter(|&&texcoord| texcoord == NO_TEXCOORD).count();
+            if missing > 0 && missing < corners.len() {
+                self.report.ignore(IgnoredKind::PartialTextureCoordinates, line, || "f".into());
+                corners.fill(NO_TEXCOORD);
+            }
         }
         if self.polygons.face_texcoords.iter().all(|&texcoord| texcoord == NO_TEXCOORD) {
             self.polygons.face_texcoords.clear();
+            self.polygons.texcoords.clear();
+            if let Some(first_line) = self.first_texcoord_line {
+                let kind = IgnoredKind::UnusedTextureCoordinates;
+                self.report.ignore_all(Ignored {
+                    kind,
+                    count: count as u64,
+                    first_line,
+                    example: "vt".into(),
+                });
+            }
         }
     }
 }

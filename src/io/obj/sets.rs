@@ -3,6 +3,9 @@
 use crate::mesh::{FaceSet, Polygons};
 use rustc_hash::FxHashMap;
 
+/// Most bytes that the names of all sets may take together.
+const MOST_NAME_BYTES: usize = 1 << 28;
+
 /// The statements that change what the next face belongs to.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub(super) enum SetStatement {
@@ -19,6 +22,8 @@ pub(super) struct Sets {
     /// Index of `present`, once a face asked for it.
     index: Option<u32>,
     known: FxHashMap<FaceSet, u32>,
+    /// Sum of the lengths of all names in all sets.
+    name_bytes: usize,
     /// Lines of the statements that no face followed yet.
     waiting: [Option<u32>; 4],
 }
@@ -46,11 +51,20 @@ impl Sets {
         }
         self.waiting = [None; 4];
         let index = *self.known.entry(self.present.clone()).or_insert_with_key(|set| {
+            let FaceSet { groups, object, material, smoothing } = set;
+            let names = groups.iter().chain(object).chain(material).chain(smoothing);
+            self.name_bytes += names.map(String::len).sum::<usize>();
             polygons.sets.push(set.clone());
             (polygons.sets.len() - 1) as u32
         });
         self.index = Some(index);
         index
+    }
+
+    /// True when the sets hold more text than a file of sense: a long name that many sets repeat would take far more
+    /// memory than the file.
+    pub(super) fn are_too_large(&self) -> bool {
+        self.name_bytes > MOST_NAME_BYTES
     }
 
     /// Lines of the statements that no face followed.

@@ -68,35 +68,67 @@ pub(in crate::io) fn weld(source: &mut Source, distance: f64) -> Result<(), Impo
 /// For each vertex, the lowest vertex it coincides with (itself when there is none): the first one within `distance`
 /// that stands for itself.
 pub(in crate::io) fn coincident(positions: &[DVec3], distance: f64) -> Vec<u32> {
-    // A cell is as wide as the distance, so that a cell and its neighbours hold all candidates. Vertices that stand
-    // for themselves are further apart than that, which bounds their number per cell.
-    let mut cells: FxHashMap<[u64; 3], Vec<u32>> = FxHashMap::default();
-    let cell_coordinate = |x: f64| {
-        let cell = if distance > 0.0 { (x / distance).floor() } else { x };
-        // Adding 0 turns -0 into 0. Where the quotient overflows, every number is a cell of its own.
-        if cell.is_finite() { cell + 0.0 } else { x }
+    // Cells four times as wide as the distance: what is within it of a vertex lies in one or two of them per axis, and
+    // few vertices that stand for themselves, being further apart than the distance, fit into one.
+    let width = 4.0 * distance;
+    let cell = |x: f64| {
+        let cell = if width > 0.0 { (x / width).floor() } else { x };
+        // Where the quotient overflows every number is a cell of its own. Adding 0 turns -0 into 0.
+        (if cell.is_finite() { cell } else { x } + 0.0).to_bits()
     };
-    let steps: &[f64] = if distance > 0.0 { &[-1.0, 0.0, 1.0] } else { &[0.0] };
+    // The last vertex that stands for itself in each cell, and for each such vertex the one before it in its cell.
+    let mut last_in_cell: FxHashMap<[u64; 3], u32> = FxHashMap::default();
+    let mut before = vec![u32::MAX; positions.len()];
     let mut stands_for = Vec::with_capacity(positions.len());
-    for (vertex, &position) in positions.iter().enumerate() {
-        let cell = position.to_array().map(cell_coordinate);
-        let mut found = vertex as u32;
-        for &dx in steps {
-            for &dy in steps {
-                for &dz in steps {
-                    let key = [cell[0] + dx, cell[1] + dy, cell[2] + dz].map(f64::to_bits);
-                    for &other in cells.get(&key).into_iter().flatten() {
-                        if positions[other as usize].distance(position) <= distance {
-                            found = found.min(other);
-                        }
-                    }
+    for (vertex, &position) in (0u32..).zip(positions) {
+        let low = (position - distance).to_array().map(cell);
+        let high = (position + distance).to_array().map(cell);
+        let mut found = vertex;
+        for corner in 0..8 {
+            let upper = [0, 1, 2].map(|axis| corner >> axis & 1 == 1);
+            if (0..3).any(|axis| upper[axis] && low[axis] == high[axis]) {
+                continue;
+            }
+            let key = [0, 1, 2].map(|axis| if upper[axis] { high[axis] } else { low[axis] });
+            let mut other = last_in_cell.get(&key).copied().unwrap_or(u32::MAX);
+            while other != u32::MAX {
+                if positions[other as usize].distance(position) <= distance {
+                    found = found.min(other);
                 }
+                other = before[other as usize];
             }
         }
-        if found as usize == vertex {
-            cells.entry(cell.map(f64::to_bits)).or_default().push(found);
+        if found == vertex {
+            let last = last_in_cell.insert(position.to_array().map(cell), vertex);
+            before[vertex as usize] = last.unwrap_or(u32::MAX);
         }
         stands_for.push(found);
     }
     stands_for
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    proptest! {
+        /// Against comparing every vertex with every vertex before it.
+        #[test]
+        fn the_lowest_vertex_in_reach_is_found(
+            grid in prop::collection::vec([-9i32..9, -2i32..2, 0i32..2], 1..60),
+            distance in prop::sample::select(vec![0.0, 0.5, 1.0, 1.5, 3.0]),
+            scale in prop::sample::select(vec![1.0, 1e-9, 1e9]),
+        ) {
+            let grid: Vec<DVec3> = grid.iter().map(|p| DVec3::from_array(p.map(f64::from))).collect();
+            let mut expected: Vec<u32> = Vec::new();
+            for (i, p) in grid.iter().enumerate() {
+                let near = |&j: &usize| expected[j] as usize == j && grid[j].distance(*p) <= distance;
+                expected.push((0..i).find(near).unwrap_or(i) as u32);
+            }
+            // A distance that is reached exactly may round to either side; a little more decides.
+            let positions: Vec<DVec3> = grid.iter().map(|&p| p * scale).collect();
+            prop_assert_eq!(coincident(&positions, distance * scale * (1.0 + 1e-9)), expected);
+        }
+    }
 }
