@@ -4,9 +4,14 @@
 //! vertex moves to (1, 6, 1)/8 of itself and its boundary neighbours, a boundary edge is halved, and a corner of a
 //! single face is rounded like any other boundary vertex.
 
+mod evaluate;
 mod limit;
 mod mask;
 mod normal;
+pub(crate) mod patch;
+pub(crate) mod patch_bicubic;
+pub(crate) mod patch_corner;
+mod patch_ring;
 mod positions;
 mod refinement;
 mod ring;
@@ -14,6 +19,7 @@ mod ring;
 mod tests;
 mod topology;
 
+pub use evaluate::{SecondDerivatives, SurfacePoint, evaluate};
 pub use limit::{LimitPoint, limit_normal, limit_point, limit_points, limit_position, limit_positions};
 pub use mask::{LimitMask, limit_mask, limit_tangent_masks};
 pub use normal::{face_normal, vertex_normal};
