@@ -2,7 +2,7 @@
 
 use super::error::ExportError;
 use std::fs::{self, File, OpenOptions};
-use std::io::{self, BufWriter, Write};
+use std::io::{self, BufWriter};
 use std::path::{Path, PathBuf};
 
 /// Writes a file through a temporary one in the same folder, which replaces it at the end. When anything fails, a

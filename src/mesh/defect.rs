@@ -96,7 +96,11 @@ impl Defect {
 
 impl fmt::Display for Defect {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let list = |ids: &[u32]| ids.iter().map(u32::to_string).collect::<Vec<_>>().join(", ");
+        let list = |ids: &[u32]| {
+            const SHOWN: usize = 8;
+            let shown: Vec<String> = ids.iter().take(SHOWN).map(u32::to_string).collect();
+            shown.join(", ") + if ids.len() > SHOWN { ", ..." } else { "" }
+        };
         match self {
             Self::SizeMismatch { promised, found } => {
                 write!(f, "the face sizes add up to {promised} but there are {found} face vertices")

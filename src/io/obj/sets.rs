@@ -6,6 +6,9 @@ use rustc_hash::FxHashMap;
 /// Most bytes that the names of all sets may take together.
 const MOST_NAME_BYTES: usize = 1 << 28;
 
+/// What a name takes besides its text.
+const BYTES_PER_NAME: usize = 64;
+
 /// The statements that change what the next face belongs to.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub(super) enum SetStatement {
@@ -22,7 +25,7 @@ pub(super) struct Sets {
     /// Index of `present`, once a face asked for it.
     index: Option<u32>,
     known: FxHashMap<FaceSet, u32>,
-    /// Sum of the lengths of all names in all sets.
+    /// What all names in all sets take, in bytes.
     name_bytes: usize,
     /// Lines of the statements that no face followed yet.
     waiting: [Option<u32>; 4],
@@ -53,7 +56,7 @@ impl Sets {
         let index = *self.known.entry(self.present.clone()).or_insert_with_key(|set| {
             let FaceSet { groups, object, material, smoothing } = set;
             let names = groups.iter().chain(object).chain(material).chain(smoothing);
-            self.name_bytes += names.map(String::len).sum::<usize>();
+            self.name_bytes += names.map(|name| name.len() + BYTES_PER_NAME).sum::<usize>();
             polygons.sets.push(set.clone());
             (polygons.sets.len() - 1) as u32
         });
