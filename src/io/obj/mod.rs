@@ -1,5 +1,6 @@
 //! Wavefront OBJ, with the crease and corner tags that OpenSubdiv writes.
 
+mod faces;
 mod read;
 mod sets;
 mod tags;

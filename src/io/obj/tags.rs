@@ -13,6 +13,7 @@ const REMEDY: &str =
 impl Reader<'_> {
     /// Reads the rest of a `t` statement.
     pub(super) fn tag(&mut self, line: u32) -> Result<()> {
+        self.understood = true;
         if !self.text.next_token_on_line() {
             return Err(self.fault("a tag without a name", REMEDY));
         }
