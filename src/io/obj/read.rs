@@ -234,7 +234,7 @@ impl<'a> Reader<'a> {
         self.understood = true;
         let name = self.name(line)?;
         if let Some(unused) = self.sets.set(statement, name, line) {
-            self.report.ignore(IgnoredKind::NamesWithoutFaces, unused, || format!("{statement:?}"));
+            self.report.ignore(IgnoredKind::NamesWithoutFaces, unused, || statement.keyword().into());
         }
         Ok(())
     }
@@ -267,8 +267,8 @@ impl<'a> Reader<'a> {
                 format!("a tag names vertex {vertex}, but the file has {count} (tags count from 0)");
             return Err(fault_at(place, message, RANGE_REMEDY));
         }
-        for line in self.sets.unused() {
-            self.report.ignore(IgnoredKind::NamesWithoutFaces, line, || "at the end".into());
+        for (statement, line) in self.sets.unused() {
+            self.report.ignore(IgnoredKind::NamesWithoutFaces, line, || statement.keyword().into());
         }
         if self.polygons.sets.iter().all(|set| *set == Default::default()) {
             self.polygons.sets.clear();

@@ -18,6 +18,20 @@ pub(super) enum SetStatement {
     Smoothing,
 }
 
+impl SetStatement {
+    const ALL: [Self; 4] = [Self::Group, Self::Object, Self::Material, Self::Smoothing];
+
+    /// The keyword in a file.
+    pub(super) fn keyword(self) -> &'static str {
+        match self {
+            Self::Group => "g",
+            Self::Object => "o",
+            Self::Material => "usemtl",
+            Self::Smoothing => "s",
+        }
+    }
+}
+
 /// Follows the statements and hands out the index of the present set to each face.
 #[derive(Default)]
 pub(super) struct Sets {
@@ -70,8 +84,11 @@ impl Sets {
         self.name_bytes > MOST_NAME_BYTES
     }
 
-    /// Lines of the statements that no face followed.
-    pub(super) fn unused(&self) -> impl Iterator<Item = u32> {
-        self.waiting.iter().copied().flatten()
+    /// The statements that no face followed, and their lines.
+    pub(super) fn unused(&self) -> impl Iterator<Item = (SetStatement, u32)> {
+        SetStatement::ALL
+            .into_iter()
+            .zip(self.waiting)
+            .filter_map(|(statement, line)| Some((statement, line?)))
     }
 }
