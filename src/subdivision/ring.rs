@@ -34,8 +34,21 @@ impl Ring {
         &self.edges[..self.edges.len() - usize::from(self.on_boundary)]
     }
 
-    pub(super) fn face_count(&self) -> usize {
-        self.face_edges().len()
+    pub(super) fn shape(&self) -> RingShape {
+        RingShape { faces: self.face_edges().len(), on_boundary: self.on_boundary }
+    }
+}
+
+/// What the masks of a ring depend on.
+#[derive(Clone, Copy, PartialEq, Eq, Hash)]
+pub(super) struct RingShape {
+    pub(super) faces: usize,
+    pub(super) on_boundary: bool,
+}
+
+impl RingShape {
+    pub(super) fn edges(self) -> usize {
+        self.faces + usize::from(self.on_boundary)
     }
 }
 
