@@ -432,6 +432,21 @@ int32_t welt_mesh_faces(const welt_mesh *mesh,
                         welt_error **error);
 
 /*
+ Writes the two vertices of each edge, in the order in which welt_refinement_vertex_parents numbers the edges of level 0.
+
+ mesh: must not be NULL.
+ vertices: receives two vertices per edge.
+ capacity: room in vertices, at least 2 * welt_mesh_edge_count(mesh) elements.
+
+ Since: 0.1.
+ */
+WELT_API
+int32_t welt_mesh_edges(const welt_mesh *mesh,
+                        uint32_t *vertices,
+                        size_t capacity,
+                        welt_error **error);
+
+/*
  Sets options to their defaults. options: must not be NULL. size: sizeof *options. Fails with WELT_ERROR_ARGUMENT where the
  size is none that the library knows, which is so when the program was compiled for a newer one. Since: 0.1.
  */

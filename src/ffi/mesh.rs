@@ -253,3 +253,29 @@ pub unsafe extern "C" fn welt_mesh_faces(
     // SAFETY: the header asks for NULL or a place for an error.
     unsafe { boundary(error, body) }
 }
+
+/// Writes the two vertices of each edge, in the order in which welt_refinement_vertex_parents numbers the edges of level 0.
+///
+/// mesh: must not be NULL.
+/// vertices: receives two vertices per edge.
+/// capacity: room in vertices, at least 2 * welt_mesh_edge_count(mesh) elements.
+///
+/// Since: 0.1.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn welt_mesh_edges(
+    mesh: *const WeltMesh,
+    vertices: *mut u32,
+    capacity: usize,
+    error: *mut *mut WeltError,
+) -> i32 {
+    let body = || {
+        // SAFETY: the header asks for a living mesh.
+        let mesh = unsafe { mesh_of(mesh) }?;
+        // SAFETY: the header asks for a buffer of this capacity.
+        let buffer = unsafe { Buffer::new(vertices, capacity, mesh.half_edge_bound(), "vertices") }?;
+        buffer.fill(mesh.half_edges().map(|h| mesh.source(h).0));
+        Ok(())
+    };
+    // SAFETY: the header asks for NULL or a place for an error.
+    unsafe { boundary(error, body) }
+}

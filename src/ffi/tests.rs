@@ -155,6 +155,12 @@ fn a_mesh_comes_back_as_it_was_given() {
         assert!(take(&mut error).1.contains("room for 11 elements; 12 are needed"));
         assert_eq!(sizes, [0; 4], "written by a call that failed");
         assert_eq!(welt_mesh_faces(mesh, s, 4, v, 12, &mut error), WELT_OK);
+        let mut edges = [9; 12];
+        assert_eq!(welt_mesh_edges(mesh, edges.as_mut_ptr(), 12, &mut error), WELT_OK);
+        let mut pairs: Vec<_> =
+            edges.chunks(2).map(|edge| (edge[0].min(edge[1]), edge[0].max(edge[1]))).collect();
+        pairs.sort_unstable();
+        assert_eq!(pairs, [(0, 1), (0, 2), (0, 3), (1, 2), (1, 3), (2, 3)]);
         welt_mesh_free(mesh);
     }
     assert_eq!((sizes, vertices), (SIZES, VERTICES));

@@ -1,9 +1,10 @@
 //! Points of the limit surface at the vertices of a control mesh.
 
 use super::mask::{RingMask, position_mask, tangent_masks};
-use super::ring::{Ring, face_center};
+use super::ring::{LargeFaces, Ring, RingShape};
 use crate::mesh::{HalfEdgeId, Mesh, VertexId};
 use glam::DVec3;
+use rustc_hash::FxHashMap;
 use smallvec::SmallVec;
 
 /// The limit surface at a vertex.
@@ -47,13 +48,7 @@ fn scaled(vector: DVec3) -> DVec3 {
 /// # Panics
 /// When there is no such vertex.
 pub fn limit_position(mesh: &Mesh, v: VertexId) -> DVec3 {
-    if let Some(ring) = RegularRing::new(mesh, v) {
-        return ring.position();
-    }
-    match Ring::new(mesh, v) {
-        Some(ring) => apply(mesh, &ring, &centers(mesh, &ring), &position_mask(&ring)),
-        None => mesh.position(v),
-    }
+    position(mesh, v, &mut Shared::default())
 }
 
 /// Position and tangents of the limit surface at `v`.
@@ -61,17 +56,7 @@ pub fn limit_position(mesh: &Mesh, v: VertexId) -> DVec3 {
 /// # Panics
 /// When there is no such vertex.
 pub fn limit_point(mesh: &Mesh, v: VertexId) -> LimitPoint {
-    if let Some(ring) = RegularRing::new(mesh, v) {
-        return LimitPoint { position: ring.position(), tangents: ring.tangents() };
-    }
-    let Some(ring) = Ring::new(mesh, v) else {
-        return LimitPoint { position: mesh.position(v), tangents: [DVec3::ZERO; 2] };
-    };
-    let centers = centers(mesh, &ring);
-    LimitPoint {
-        position: apply(mesh, &ring, &centers, &position_mask(&ring)),
-        tangents: tangent_masks(&ring).map(|mask| apply(mesh, &ring, &centers, &mask)),
-    }
+    point(mesh, v, &mut Shared::default())
 }
 
 /// The unit normal of the limit surface at `v`, outwards; `None` at an isolated vertex and where the tangents do not
@@ -85,19 +70,58 @@ pub fn limit_normal(mesh: &Mesh, v: VertexId) -> Option<DVec3> {
 
 /// [`limit_position`] of every vertex id; a removed vertex keeps the position it had.
 pub fn limit_positions(mesh: &Mesh) -> Vec<DVec3> {
-    let position = |v: VertexId| if mesh.has_vertex(v) { limit_position(mesh, v) } else { mesh.position(v) };
-    (0..mesh.vertex_bound() as u32).map(VertexId).map(position).collect()
+    let mut shared = Shared::default();
+    let ids = (0..mesh.vertex_bound() as u32).map(VertexId);
+    ids.map(|v| if mesh.has_vertex(v) { position(mesh, v, &mut shared) } else { mesh.position(v) }).collect()
 }
 
 /// [`limit_point`] of every vertex id; a removed vertex keeps the position it had and has no tangents.
 pub fn limit_points(mesh: &Mesh) -> Vec<LimitPoint> {
-    let removed = |v| LimitPoint { position: mesh.position(v), tangents: [DVec3::ZERO; 2] };
-    let point = |v: VertexId| if mesh.has_vertex(v) { limit_point(mesh, v) } else { removed(v) };
-    (0..mesh.vertex_bound() as u32).map(VertexId).map(point).collect()
+    let mut shared = Shared::default();
+    let ids = (0..mesh.vertex_bound() as u32).map(VertexId);
+    ids.map(|v| if mesh.has_vertex(v) { point(mesh, v, &mut shared) } else { fixed(mesh, v) }).collect()
 }
 
-fn centers(mesh: &Mesh, ring: &Ring) -> SmallVec<[DVec3; 16]> {
-    ring.face_edges().iter().map(|&h| face_center(mesh, h)).collect()
+/// What the vertices of one mesh can share.
+#[derive(Default)]
+struct Shared {
+    large: LargeFaces,
+    tangents: FxHashMap<RingShape, [RingMask; 2]>,
+}
+
+fn position(mesh: &Mesh, v: VertexId, shared: &mut Shared) -> DVec3 {
+    if let Some(ring) = RegularRing::new(mesh, v) {
+        return ring.position();
+    }
+    match Ring::new(mesh, v) {
+        Some(ring) => {
+            apply(mesh, &ring, &centers(mesh, &ring, &mut shared.large), &position_mask(ring.shape()))
+        }
+        None => mesh.position(v),
+    }
+}
+
+fn point(mesh: &Mesh, v: VertexId, shared: &mut Shared) -> LimitPoint {
+    if let Some(ring) = RegularRing::new(mesh, v) {
+        return LimitPoint { position: ring.position(), tangents: ring.tangents() };
+    }
+    let Some(ring) = Ring::new(mesh, v) else { return fixed(mesh, v) };
+    let centers = centers(mesh, &ring, &mut shared.large);
+    let shape = ring.shape();
+    let [first, second] = shared.tangents.entry(shape).or_insert_with(|| tangent_masks(shape));
+    LimitPoint {
+        position: apply(mesh, &ring, &centers, &position_mask(shape)),
+        tangents: [apply(mesh, &ring, &centers, first), apply(mesh, &ring, &centers, second)],
+    }
+}
+
+/// A vertex that stays where it is.
+fn fixed(mesh: &Mesh, v: VertexId) -> LimitPoint {
+    LimitPoint { position: mesh.position(v), tangents: [DVec3::ZERO; 2] }
+}
+
+fn centers(mesh: &Mesh, ring: &Ring, large: &mut LargeFaces) -> SmallVec<[DVec3; 16]> {
+    ring.face_edges().iter().map(|&h| large.center(mesh, h)).collect()
 }
 
 fn apply(mesh: &Mesh, ring: &Ring, centers: &[DVec3], mask: &RingMask) -> DVec3 {

@@ -10,7 +10,7 @@
 //! boundary; under the rules in use they give another plane on each level. The masks here are eigenvectors of the
 //! rules in use, and their plane is the one to which those of the levels converge.
 
-use super::ring::Ring;
+use super::ring::{Ring, RingShape};
 use crate::mesh::{Mesh, VertexId};
 use smallvec::{SmallVec, smallvec};
 use std::f64::consts::PI;
@@ -33,7 +33,7 @@ pub(super) struct RingMask {
 /// When there is no such vertex.
 pub fn limit_mask(mesh: &Mesh, v: VertexId) -> LimitMask {
     match Ring::new(mesh, v) {
-        Some(ring) => expand(mesh, &ring, &position_mask(&ring)),
+        Some(ring) => expand(mesh, &ring, &position_mask(ring.shape())),
         None => smallvec![(v, 1.0)],
     }
 }
@@ -48,10 +48,10 @@ pub fn limit_mask(mesh: &Mesh, v: VertexId) -> LimitMask {
 /// When there is no such vertex.
 pub fn limit_tangent_masks(mesh: &Mesh, v: VertexId) -> Option<[LimitMask; 2]> {
     let ring = Ring::new(mesh, v)?;
-    Some(tangent_masks(&ring).map(|mask| expand(mesh, &ring, &mask)))
+    Some(tangent_masks(ring.shape()).map(|mask| expand(mesh, &ring, &mask)))
 }
 
-pub(super) fn position_mask(ring: &Ring) -> RingMask {
+pub(super) fn position_mask(ring: RingShape) -> RingMask {
     if ring.on_boundary {
         let mut mask = RingMask::zero(ring, 4.0 / 6.0);
         *mask.first_edge() += 1.0 / 6.0;
@@ -59,19 +59,19 @@ pub(super) fn position_mask(ring: &Ring) -> RingMask {
         return mask;
     }
     // (n^2 v + 4 sum e + sum f) / (n (n + 5)) on the refined ring.
-    let n = ring.face_count() as f64;
+    let n = ring.faces as f64;
     let total = n * (n + 5.0);
     RingMask {
         vertex: (n - 1.0) / (n + 5.0),
-        edges: smallvec![2.0 / total; ring.edges.len()],
-        faces: smallvec![4.0 / total; ring.face_count()],
+        edges: smallvec![2.0 / total; ring.edges()],
+        faces: smallvec![4.0 / total; ring.faces],
     }
 }
 
-pub(super) fn tangent_masks(ring: &Ring) -> [RingMask; 2] {
+pub(super) fn tangent_masks(ring: RingShape) -> [RingMask; 2] {
     if ring.on_boundary {
         [along_boundary(ring), across_boundary(ring)]
-    } else if ring.face_count() == 2 {
+    } else if ring.faces == 2 {
         two_faces(ring)
     } else {
         interior_tangents(ring)
@@ -79,8 +79,8 @@ pub(super) fn tangent_masks(ring: &Ring) -> [RingMask; 2] {
 }
 
 impl RingMask {
-    fn zero(ring: &Ring, vertex: f64) -> Self {
-        Self { vertex, edges: smallvec![0.0; ring.edges.len()], faces: smallvec![0.0; ring.face_count()] }
+    fn zero(ring: RingShape, vertex: f64) -> Self {
+        Self { vertex, edges: smallvec![0.0; ring.edges()], faces: smallvec![0.0; ring.faces] }
     }
 
     fn first_edge(&mut self) -> &mut f64 {
@@ -101,8 +101,8 @@ fn eigenvalue(theta: f64) -> f64 {
 
 /// With the wave w along the ring the mask is 4 w_i on edge points and (w_i + w_(i+1)) / (4 lambda - 1) on face
 /// points; carried back to the unrefined ring, w_i / lambda on edges and 4 (w_i + w_(i+1)) / (4 lambda - 1) on centres.
-fn interior_tangents(ring: &Ring) -> [RingMask; 2] {
-    let n = ring.face_count();
+fn interior_tangents(ring: RingShape) -> [RingMask; 2] {
+    let n = ring.faces;
     let theta = 2.0 * PI / n as f64;
     let lambda = eigenvalue(theta);
     // The tangents of a regular vertex become derivatives.
@@ -121,14 +121,14 @@ fn interior_tangents(ring: &Ring) -> [RingMask; 2] {
 
 /// Two faces: the eigenvalue 1/4 belongs to the difference of the edges and to that of the faces (and to an
 /// alternating mode, so that the surface need not have a tangent plane here).
-fn two_faces(ring: &Ring) -> [RingMask; 2] {
+fn two_faces(ring: RingShape) -> [RingMask; 2] {
     let [mut edges, mut faces] = [RingMask::zero(ring, 0.0), RingMask::zero(ring, 0.0)];
     edges.edges.copy_from_slice(&[0.5, -0.5]);
     faces.faces.copy_from_slice(&[0.5, -0.5]);
     [edges, faces]
 }
 
-fn along_boundary(ring: &Ring) -> RingMask {
+fn along_boundary(ring: RingShape) -> RingMask {
     let mut mask = RingMask::zero(ring, 0.0);
     *mask.first_edge() += 0.5;
     *mask.last_edge() -= 0.5;
@@ -137,8 +137,8 @@ fn along_boundary(ring: &Ring) -> RingMask {
 
 /// The eigenvector that vanishes on the boundary in its inner part: a sine along the ring, as in the interior with
 /// half the angle; the weights of the boundary's points follow from the boundary's columns of the matrix.
-fn across_boundary(ring: &Ring) -> RingMask {
-    let k = ring.face_count();
+fn across_boundary(ring: RingShape) -> RingMask {
+    let k = ring.faces;
     if k == 1 {
         let mut mask = RingMask::zero(ring, -1.0);
         *mask.first_edge() += 0.5;

@@ -2,7 +2,7 @@
 //!
 //! The boundary follows the cubic B-spline of its control points ("edge only" in OpenSubdiv's terms): a boundary
 //! vertex moves to (1, 6, 1)/8 of itself and its boundary neighbours, a boundary edge is halved, and a corner of a
-//! single face is rounded like any other boundary vertex.
+//! single face is rounded like any other boundary vertex. Sharpness of edges and vertices is not regarded: all are smooth.
 
 mod evaluate;
 mod limit;

@@ -196,3 +196,15 @@ fn small_and_degenerate_meshes() {
     let tiny = mesh([DVec3::ZERO, DVec3::X, DVec3::Y].map(|p| p * 1e-200).to_vec(), &[&[0, 1, 2]]);
     assert_close(limit_normal(&tiny, VertexId(0)).unwrap(), DVec3::Z);
 }
+
+#[test]
+fn a_face_with_many_vertices_takes_linear_time() {
+    const COUNT: u32 = 200_000;
+    let vertices: Vec<u32> = (0..COUNT).collect();
+    let circle = |i: &u32| DVec3::new((f64::from(*i) / 1e4).sin(), f64::from(*i), 0.0);
+    let mesh = mesh(vertices.iter().map(circle).collect(), &[&vertices]);
+    // Squared, this would take minutes.
+    let points = limit_points(&mesh);
+    assert_eq!(points[9].position, limit_position(&mesh, VertexId(9)));
+    assert_eq!(refine(&mesh, 1).unwrap().level().face_count(), COUNT as usize);
+}
