@@ -297,3 +297,19 @@ fn extend<const N: usize>(grid: &mut [[DVec3; N]; N], boundary_u: bool, boundary
         }
     }
 }
+
+impl Corner {
+    /// Control points of the quad and its neighbours, relative to the origin; their hull holds the surface.
+    pub(crate) fn control_points(&self) -> impl Iterator<Item = DVec3> {
+        let rest = self.spokes.iter().chain(&self.diagonals).chain(&self.outer);
+        std::iter::once(self.vertex).chain(rest.copied())
+    }
+
+    /// A box round the surface of the quad.
+    pub(crate) fn bounds(&self) -> (DVec3, DVec3) {
+        let (low, high) = self
+            .control_points()
+            .fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), p| (low.min(p), high.max(p)));
+        (low + self.origin, high + self.origin)
+    }
+}

@@ -1,1 +1,138 @@
-//! A frozen limit surface: line hit, closest point, deviation.
+//! A frozen limit surface: evaluation, line hits, closest points, deviation.
+//!
+//! [`LimitSurface`] takes what it needs from the mesh and does not change when the mesh does. Every face is held as
+//! bicubic pieces; beside an extraordinary vertex some levels of pieces are stored and deeper ones are made when a
+//! query gets there, so results are those of the true limit surface everywhere. Parameters (face, corner, u, v) are
+//! those of [`evaluate`](crate::subdivision::evaluate).
+
+mod closest;
+mod convexity;
+mod deviation;
+mod freeze;
+mod line;
+mod line_piece;
+mod tree;
+
+pub use closest::{ClosestOptions, Facing, Foot};
+pub use deviation::{Deviation, DeviationSample, deviation, deviation_both_ways, deviation_samples};
+pub use line::Hit;
+
+use crate::mesh::{FaceId, Mesh};
+use crate::subdivision::SurfacePoint;
+use crate::subdivision::patch::{Patch, evaluate_corner, to_quarter};
+use crate::subdivision::patch_bicubic::{Bicubic, Jet};
+use crate::subdivision::patch_corner::Corner;
+use freeze::{CornerEntry, LEVELS, PatchEntry, Piece, PatchPlace, QuarterEntry};
+use glam::DVec3;
+use tree::Tree;
+
+/// The limit surface of a mesh or of some of its faces, frozen. See the [module](self).
+#[derive(Clone, Debug)]
+pub struct LimitSurface {
+    /// Frozen faces, ascending, each with its first patch.
+    faces: Vec<(FaceId, u32)>,
+    places: Vec<PatchPlace>,
+    patches: Vec<PatchEntry>,
+    pieces: Vec<Piece>,
+    corners: Vec<CornerEntry>,
+    tree: Tree,
+    /// Diagonal of the bounding box of the pieces' control points.
+    size: f64,
+    /// Distances below this are rounding.
+    tolerance: f64,
+}
+
+impl LimitSurface {
+    /// Freezes the whole surface (Catmull-Clark, boundary rule edge-only).
+    pub fn new(mesh: &Mesh) -> Self {
+        let faces: Vec<FaceId> = mesh.faces().collect();
+        freeze::freeze(mesh, faces)
+    }
+
+    /// Freezes the surface of `faces` only; boundary loops and faces that do not exist are passed over. Time and
+    /// memory follow the number of these faces and their neighbours, not the mesh.
+    pub fn around(mesh: &Mesh, faces: &[FaceId]) -> Self {
+        let mut faces: Vec<FaceId> =
+            faces.iter().copied().filter(|&f| !f.is_boundary() && mesh.has_face(f)).collect();
+        faces.sort_unstable();
+        faces.dedup();
+        freeze::freeze(mesh, faces)
+    }
+
+    /// Frozen faces, ascending.
+    pub fn faces(&self) -> impl ExactSizeIterator<Item = FaceId> {
+        self.faces.iter().map(|entry| entry.0)
+    }
+
+    /// Number of patches of `face`: 1 for a quad, one per corner for another face, 0 for a face that is not frozen.
+    pub fn patch_count(&self, face: FaceId) -> usize {
+        let Ok(index) = self.faces.binary_search_by_key(&face, |entry| entry.0) else {
+            return 0;
+        };
+        let end = self.faces.get(index + 1).map_or(self.patches.len(), |entry| entry.1 as usize);
+        end - self.faces[index].1 as usize
+    }
+
+    /// Diagonal of a box round the surface: the size that tolerances refer to. 0 when nothing is frozen.
+    pub fn size(&self) -> f64 {
+        self.size
+    }
+
+    /// The surface at (u, v) of patch `corner` of `face`; parameters outside [0, 1] are moved to the nearest inside.
+    /// `None` where no such patch is frozen and for NaN.
+    pub fn evaluate(&self, face: FaceId, corner: usize, u: f64, v: f64) -> Option<SurfacePoint> {
+        if u.is_nan() || v.is_nan() || corner >= self.patch_count(face) {
+            return None;
+        }
+        let index = self.faces.binary_search_by_key(&face, |entry| entry.0).ok()?;
+        let patch = self.faces[index].1 as usize + corner;
+        Some(self.evaluate_patch(patch, u.clamp(0.0, 1.0), v.clamp(0.0, 1.0)))
+    }
+
+    fn evaluate_patch(&self, patch: usize, u: f64, v: f64) -> SurfacePoint {
+        let smooth = |jet: Jet| SurfacePoint {
+            position: jet.position,
+            du: jet.du,
+            dv: jet.dv,
+            second: Some(crate::subdivision::SecondDerivatives { uu: jet.duu, uv: jet.duv, vv: jet.dvv }),
+            normal: jet.du.cross(jet.dv).normalize_or_zero(),
+        };
+        let piece = |index: u32| &self.pieces[index as usize].bicubic;
+        let quarters = match &self.patches[patch] {
+            PatchEntry::Regular(index) => return smooth(piece(*index).jet(u, v)),
+            PatchEntry::Irregular(quarters) => quarters,
+        };
+        let (quarter, mut x, mut y) = to_quarter(u, v);
+        match quarters[quarter] {
+            QuarterEntry::Regular(index) => smooth(piece(index).jet(x, y).from_quarter(quarter)),
+            QuarterEntry::Corner { first_piece, corner } => {
+                let mut scale = 1.0;
+                for level in 0..LEVELS {
+                    (x, y, scale) = (2.0 * x, 2.0 * y, 2.0 * scale);
+                    let (side, a, b) = match (x >= 1.0, y >= 1.0) {
+                        (false, false) => continue,
+                        (true, false) => (0, x - 1.0, y),
+                        (true, true) => (1, x - 1.0, y - 1.0),
+                        (false, true) => (2, x, y - 1.0),
+                    };
+                    let jet = piece(first_piece + 3 * level + side).jet(a, b).scaled(scale);
+                    return smooth(jet.from_quarter(quarter));
+                }
+                let mut found = evaluate_corner(&self.corners[corner as usize].corner, x, y);
+                found.jet = found.jet.scaled(scale).from_quarter(quarter);
+                found.into()
+            }
+        }
+    }
+
+    /// The distance of `point` to the surface, positive on the side of its normals. The closest point whose normal
+    /// has an angle below 90 degrees with `normal` counts; where there is none, the closest point. `None` when the
+    /// surface is empty or a coordinate is not finite.
+    pub fn signed_distance(&self, point: DVec3, normal: DVec3) -> Option<f64> {
+        let facing = ClosestOptions { facing: Some(Facing { normal, min_cosine: 0.0 }), ..Default::default() };
+        let foot = self
+            .closest(point, &facing)
+            .or_else(|| self.closest(point, &ClosestOptions::default()))?;
+        Some(foot.distance.copysign((point - foot.position).dot(foot.normal)))
+    }
+}

@@ -1,0 +1,378 @@
+//! The closest point: branch and bound over the pieces, Newton's method where it is certain.
+
+use super::convexity::Convexity;
+use super::freeze::{CornerEntry, Domain};
+use super::tree::{Content, Node};
+use super::{Bicubic, Jet, LimitSurface};
+use crate::mesh::FaceId;
+use crate::subdivision::patch_corner::Points;
+use glam::DVec3;
+use smallvec::SmallVec;
+
+/// How often a piece is halved at most before Newton's method is trusted without proof.
+const MAX_HALVINGS: u32 = 8;
+/// Parts of pieces looked at before halving ends: bounds the time at centres of curvature, where everything is
+/// equally close.
+const MAX_PARTS: u32 = 4000;
+/// Refinements beside an extraordinary vertex; see the same limit of evaluation.
+const MAX_DEPTH: u32 = 128;
+
+/// Which normals a closest point may have.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub struct Facing {
+    /// Reference direction, of any length.
+    pub normal: DVec3,
+    /// Smallest cosine of the angle between the surface normal and the reference direction, exclusive.
+    pub min_cosine: f64,
+}
+
+/// What [`LimitSurface::closest`] looks for.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub struct ClosestOptions {
+    /// Points at this distance or farther do not count.
+    pub radius: f64,
+    /// With this, only points count where the distance is locally smallest (feet of perpendiculars, and points of
+    /// the border) and the normal is compatible: a thin wall does not snap to its other side.
+    pub facing: Option<Facing>,
+}
+
+impl Default for ClosestOptions {
+    fn default() -> Self {
+        Self { radius: f64::INFINITY, facing: None }
+    }
+}
+
+/// A closest point.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub struct Foot {
+    /// Face in which it lies.
+    pub face: FaceId,
+    /// Patch of the face.
+    pub corner: usize,
+    /// Parameter in [0, 1].
+    pub u: f64,
+    /// Parameter in [0, 1].
+    pub v: f64,
+    /// Position on the surface.
+    pub position: DVec3,
+    /// Unit normal, or zero where the surface has none.
+    pub normal: DVec3,
+    /// Distance to the point asked for.
+    pub distance: f64,
+}
+
+/// A part of a piece: the square from (s, t) of size `size`.
+struct Part {
+    bicubic: Bicubic,
+    s: f64,
+    t: f64,
+    size: f64,
+    halvings: u32,
+}
+
+struct Found {
+    domain: Domain,
+    s: f64,
+    t: f64,
+    position: DVec3,
+    normal: DVec3,
+}
+
+struct Search<'a> {
+    surface: &'a LimitSurface,
+    point: DVec3,
+    facing: Option<Facing>,
+    /// Distance of the best foot so far.
+    best: f64,
+    /// A distance that some point of the surface is known to have or to undercut.
+    bound: f64,
+    found: Option<Found>,
+    parts: u32,
+    stack: Vec<Part>,
+}
+
+impl LimitSurface {
+    /// The point of the surface closest to `point`. `None` when nothing lies within the radius or is compatible, when
+    /// the surface is empty, and when a coordinate of `point` is not finite.
+    ///
+    /// At a point that is equally far from many points of the surface (the centre of a sphere) one of them.
+    pub fn closest(&self, point: DVec3, options: &ClosestOptions) -> Option<Foot> {
+        if !point.is_finite() || options.radius.is_nan() {
+            return None;
+        }
+        let facing = match options.facing {
+            Some(facing) => {
+                let normal = facing.normal.try_normalize()?;
+                Some(Facing { normal, ..facing })
+            }
+            None => None,
+        };
+        let mut search = Search {
+            surface: self,
+            point,
+            facing,
+            best: options.radius,
+            bound: f64::INFINITY,
+            found: None,
+            parts: 0,
+            stack: Vec::with_capacity(8),
+        };
+        search.run();
+        let found = search.found?;
+        let place = self.places[found.domain.patch as usize];
+        let (u, v) = found.domain.parameters(found.s, found.t);
+        let normal = match found.normal.try_normalize() {
+            Some(normal) => normal,
+            None => self.evaluate_patch(found.domain.patch as usize, u, v).normal,
+        };
+        Some(Foot {
+            face: place.face,
+            corner: place.corner as usize,
+            u,
+            v,
+            position: found.position,
+            normal,
+            distance: search.best,
+        })
+    }
+}
+
+fn box_distance(low: DVec3, high: DVec3, point: DVec3) -> f64 {
+    (low - point).max(point - high).max(DVec3::ZERO).length()
+}
+
+impl Search<'_> {
+    /// Nothing at this distance or beyond is wanted.
+    fn hopeless(&self, at_least: f64) -> bool {
+        at_least >= self.best || at_least > self.bound
+    }
+
+    fn run(&mut self) {
+        let surface = self.surface;
+        let distance = |node: &Node, point: DVec3| box_distance(node.low, node.high, point);
+        let mut open: SmallVec<[(f64, u32); 64]> = SmallVec::new();
+        if surface.tree.bounds().is_some() {
+            open.push((distance(surface.tree.node(0), self.point), 0));
+        }
+        while let Some((at_least, index)) = open.pop() {
+            if self.hopeless(at_least) {
+                continue;
+            }
+            match surface.tree.content(index) {
+                Content::Children(children) => {
+                    let [a, b] = children.map(|c| (distance(surface.tree.node(c), self.point), c));
+                    let (near, far) = if b.0 < a.0 { (b, a) } else { (a, b) };
+                    open.push(far);
+                    open.push(near);
+                }
+                Content::Leaf(items) => {
+                    for &item in items {
+                        match surface.pieces.get(item as usize) {
+                            Some(piece) => self.visit(piece.bicubic, DVec3::ZERO, piece.domain),
+                            None => self.visit_corner(&surface.corners[item as usize - surface.pieces.len()]),
+                        }
+                    }
+                }
+            }
+        }
+    }
+
+    /// Looks at a patch whose points are relative to `origin`.
+    fn visit(&mut self, bicubic: Bicubic, origin: DVec3, domain: Domain) {
+        let point = self.point - origin;
+        self.stack.clear();
+        self.stack.push(Part { bicubic, s: 0.0, t: 0.0, size: 1.0, halvings: 0 });
+        while let Some(part) = self.stack.pop() {
+            let (low, high) = part.bicubic.bounds();
+            if self.hopeless(box_distance(low, high, point)) {
+                continue;
+            }
+            let convexity = Convexity::new(&part.bicubic, point);
+            if self.hopeless(convexity.at_least) {
+                continue;
+            }
+            self.parts += 1;
+            if convexity.convex || part.halvings >= MAX_HALVINGS || self.parts > MAX_PARTS {
+                let (a, b, jet) = minimise(&part.bicubic, point);
+                self.offer(&domain, (part.s + part.size * a, part.t + part.size * b), &jet, point, origin);
+            } else {
+                self.split(&part, point);
+            }
+        }
+    }
+
+    /// Puts the quarters of `part` on the stack, the nearest on top.
+    fn split(&mut self, part: &Part, point: DVec3) {
+        let quarters = part.bicubic.quarters();
+        // The corner that all quarters share is a point of the surface.
+        let middle = quarters[0].points[3][3].distance(point);
+        if self.facing.is_none() {
+            self.bound = self.bound.min(middle);
+        }
+        let size = 0.5 * part.size;
+        let distances = quarters.map(|quarter| {
+            let points = &quarter.points;
+            (points[1][1] + points[2][2]).distance_squared(2.0 * point)
+        });
+        let mut order = [0, 1, 2, 3];
+        order.sort_unstable_by(|&a: &usize, &b| distances[b].total_cmp(&distances[a]));
+        for i in order {
+            self.stack.push(Part {
+                bicubic: quarters[i],
+                s: part.s + if i % 2 == 1 { size } else { 0.0 },
+                t: part.t + if i >= 2 { size } else { 0.0 },
+                size,
+                halvings: part.halvings + 1,
+            });
+        }
+    }
+
+    /// Takes a minimum over a part of a piece if it is the best so far and allowed. `point` and the jet are relative
+    /// to `origin`.
+    fn offer(&mut self, domain: &Domain, (s, t): (f64, f64), jet: &Jet, point: DVec3, origin: DVec3) {
+        let way = jet.position - point;
+        let distance = way.length();
+        if distance.is_nan() || distance >= self.best {
+            return;
+        }
+        let normal = jet.du.cross(jet.dv);
+        if let Some(facing) = self.facing {
+            let Some(unit) = normal.try_normalize() else {
+                return;
+            };
+            if unit.dot(facing.normal) <= facing.min_cosine {
+                return;
+            }
+            let aside = (way - unit * way.dot(unit)).length();
+            if aside > 1e3 * self.surface.tolerance && !self.on_rim(domain, s, t) {
+                return;
+            }
+        }
+        self.take(Found { domain: *domain, s, t, position: jet.position + origin, normal }, distance);
+    }
+
+    fn take(&mut self, found: Found, distance: f64) {
+        self.best = distance;
+        self.bound = self.bound.min(distance);
+        self.found = Some(found);
+    }
+
+    /// True where the frozen surface ends.
+    fn on_rim(&self, domain: &Domain, s: f64, t: f64) -> bool {
+        let (u, v) = domain.parameters(s, t);
+        let rims = self.surface.places[domain.patch as usize].rims;
+        let sides = [v <= 0.0, u >= 1.0, v >= 1.0, u <= 0.0];
+        sides.iter().enumerate().any(|(bit, &on)| on && rims & (1 << bit) != 0)
+    }
+
+    /// Looks at what lies beside an extraordinary vertex, level by level.
+    fn visit_corner(&mut self, entry: &CornerEntry) {
+        if self.hopeless({
+            let (low, high) = entry.corner.bounds();
+            box_distance(low, high, self.point)
+        }) {
+            return;
+        }
+        let limit = entry.corner.vertex_limit();
+        let way = entry.corner.origin + limit.position - self.point;
+        let at_vertex = Jet { position: way, du: limit.du, dv: limit.dv, ..Jet::default() };
+        let unit = limit.normal.normalize_or_zero();
+        let aside = (way - unit * way.dot(unit)).length();
+        if self.facing.is_none() || aside <= 1e3 * self.surface.tolerance {
+            self.offer(&entry.domain, (0.0, 0.0), &at_vertex, DVec3::ZERO, self.point);
+        }
+        // Where the vertex is the foot itself, what is left round it differs by rounding only.
+        let is_foot = unit != DVec3::ZERO && aside <= self.surface.tolerance;
+        let direction = way.normalize_or_zero();
+
+        let mut corner = entry.corner.clone();
+        let mut domain = entry.domain;
+        let mut scratch = Points::new();
+        for _ in 0..MAX_DEPTH {
+            let (low, high) = corner.bounds();
+            let point = self.point - corner.origin;
+            let (mut ahead, mut radius) = (f64::INFINITY, 0.0f64);
+            for p in corner.control_points() {
+                ahead = ahead.min((p - point).dot(direction));
+                radius = radius.max(p.length_squared());
+            }
+            let slack = if is_foot { 0.05 * self.surface.tolerance } else { 0.0 };
+            if self.hopeless(box_distance(low, high, self.point))
+                || self.hopeless(ahead + slack)
+                || radius.sqrt() <= 0.05 * self.surface.tolerance
+            {
+                return;
+            }
+            let sides = corner.refine(&mut scratch);
+            for (side, grid) in sides.iter().enumerate() {
+                self.visit(Bicubic::from_bspline(grid), corner.origin, domain.side(side));
+            }
+            domain = domain.inner();
+        }
+    }
+}
+
+/// The minimum of the distance over the patch, by Newton's method that keeps to [0, 1]^2 (projected, with halved
+/// steps where the distance would grow; Gauss-Newton where the Hessian is not positive).
+fn minimise(bicubic: &Bicubic, point: DVec3) -> (f64, f64, Jet) {
+    let mut at = [0.5, 0.5];
+    let mut jet = bicubic.jet(at[0], at[1]);
+    for _ in 0..32 {
+        let way = jet.position - point;
+        let gradient = [way.dot(jet.du), way.dot(jet.dv)];
+        // A parameter at its end stays there while the distance falls outwards.
+        let free = [0, 1].map(|i| !(at[i] <= 0.0 && gradient[i] >= 0.0 || at[i] >= 1.0 && gradient[i] <= 0.0));
+        let Some((mut step, exact)) = newton_step(&jet, way, gradient, free) else {
+            break;
+        };
+        // Shorten the step so that it ends on the border that it crosses first.
+        let mut fraction = 1.0f64;
+        for i in 0..2 {
+            let end = if step[i] < 0.0 { -at[i] } else { 1.0 - at[i] };
+            if step[i].abs() > end.abs() {
+                fraction = fraction.min(end / step[i]);
+            }
+        }
+        step = step.map(|x| x * fraction);
+        let before = way.length_squared();
+        let mut moved = false;
+        for _ in 0..10 {
+            let next = [0, 1].map(|i: usize| (at[i] + step[i]).clamp(0.0, 1.0));
+            let next_jet = bicubic.jet(next[0], next[1]);
+            if next_jet.position.distance_squared(point) <= before * (1.0 + 1e-14) + f64::MIN_POSITIVE {
+                (at, jet, moved) = (next, next_jet, true);
+                break;
+            }
+            step = step.map(|x| 0.5 * x);
+        }
+        // Newton's method squares the error: after a step of 1e-8 nothing is left to gain.
+        let length = step[0].abs().max(step[1].abs());
+        if !moved || length < if exact && fraction == 1.0 { 1e-8 } else { 1e-15 } {
+            break;
+        }
+    }
+    (at[0], at[1], jet)
+}
+
+/// The step of the free parameters, and whether it is Newton's; `None` when none is free or nothing can be solved.
+fn newton_step(jet: &Jet, way: DVec3, gradient: [f64; 2], free: [bool; 2]) -> Option<([f64; 2], bool)> {
+    let first = [jet.du.length_squared(), jet.du.dot(jet.dv), jet.dv.length_squared()];
+    let full = [first[0] + way.dot(jet.duu), first[1] + way.dot(jet.duv), first[2] + way.dot(jet.dvv)];
+    let determinant = |h: &[f64; 3]| h[0] * h[2] - h[1] * h[1];
+    let exact = match free {
+        [false, false] => return None,
+        [true, false] => full[0] > 0.0,
+        [false, true] => full[2] > 0.0,
+        [true, true] => full[0] > 0.0 && determinant(&full) > 0.0,
+    };
+    let h = if exact { full } else { first };
+    let step = match free {
+        [true, true] => {
+            let d = determinant(&h);
+            [(h[1] * gradient[1] - h[2] * gradient[0]) / d, (h[1] * gradient[0] - h[0] * gradient[1]) / d]
+        }
+        [true, false] => [-gradient[0] / h[0], 0.0],
+        _ => [0.0, -gradient[1] / h[2]],
+    };
+    (step[0].is_finite() && step[1].is_finite()).then_some((step, exact))
+}

@@ -1,0 +1,66 @@
+//! When is the squared distance of a point to a bicubic patch convex in the parameters?
+//!
+//! Then it has one minimum over the patch, and Newton's method finds it; this is what ends the search of a closest
+//! point with certainty.
+
+use super::Bicubic;
+use glam::DVec3;
+
+/// What bounds say about a patch, seen from a point.
+pub(super) struct Convexity {
+    /// No point of the patch is closer than this.
+    pub(super) at_least: f64,
+    /// Half the squared distance has a positive definite Hessian all over the patch.
+    pub(super) convex: bool,
+}
+
+/// Mean of vectors, and the largest distance of any of them from it.
+fn spread<const N: usize>(vectors: &[DVec3; N]) -> (DVec3, f64) {
+    let mean = vectors.iter().sum::<DVec3>() / N as f64;
+    let radius = vectors.iter().map(|v| v.distance_squared(mean)).fold(0.0, f64::max).sqrt();
+    (mean, radius)
+}
+
+/// Smallest and largest product with `w`, and the largest length.
+fn products<const N: usize>(vectors: &[DVec3; N], w: DVec3) -> (f64, f64, f64) {
+    let start = (f64::INFINITY, f64::NEG_INFINITY, 0.0f64);
+    let (low, high, length) = vectors.iter().fold(start, |(low, high, length), &v| {
+        let product = v.dot(w);
+        (low.min(product), high.max(product), length.max(v.length_squared()))
+    });
+    (low, high, length.sqrt())
+}
+
+impl Convexity {
+    pub(super) fn new(bicubic: &Bicubic, point: DVec3) -> Self {
+        let p = &bicubic.points;
+        let net: &[DVec3; 16] = &std::array::from_fn(|k| p[k / 4][k % 4]);
+        let (middle, radius) = spread(net);
+        let w = middle - point;
+        let direction = w.normalize_or_zero();
+        let at_least = net.iter().map(|&q| (q - point).dot(direction)).fold(f64::INFINITY, f64::min);
+
+        // Control vectors of the derivatives; the factors 3 and 6 of the derivative are left out together with their
+        // squares: uu and vv carry 2/3 of the square of the first derivatives' factor.
+        let du: [DVec3; 12] = std::array::from_fn(|k| p[k / 3][k % 3 + 1] - p[k / 3][k % 3]);
+        let dv: [DVec3; 12] = std::array::from_fn(|k| p[k / 4 + 1][k % 4] - p[k / 4][k % 4]);
+        let duu: [DVec3; 8] = std::array::from_fn(|k| du[k / 2 * 3 + k % 2 + 1] - du[k / 2 * 3 + k % 2]);
+        let dvv: [DVec3; 8] = std::array::from_fn(|k| dv[k + 4] - dv[k]);
+        let duv: [DVec3; 9] = std::array::from_fn(|k| du[(k / 3 + 1) * 3 + k % 3] - du[k / 3 * 3 + k % 3]);
+        let (a, a_spread) = spread(&du);
+        let (b, b_spread) = spread(&dv);
+        let (a_length, b_length) = (a.length(), b.length());
+        let second = 2.0 / 3.0;
+        let diagonal = |length: f64, spread: f64, bend: (f64, f64, f64)| {
+            let slope = (length - spread).max(0.0);
+            slope * slope + second * (bend.0 - radius * bend.2)
+        };
+        let uu = diagonal(a_length, a_spread, products(&duu, w));
+        let vv = diagonal(b_length, b_spread, products(&dvv, w));
+        let twist = products(&duv, w);
+        let slack = a_length * b_spread + b_length * a_spread + a_spread * b_spread + radius * twist.2;
+        let ab = a.dot(b);
+        let uv = (ab + twist.0).abs().max((ab + twist.1).abs()) + slack;
+        Self { at_least, convex: uu > 0.0 && vv > 0.0 && uu * vv > uv * uv }
+    }
+}

@@ -1,0 +1,113 @@
+//! How far one limit surface is from another.
+//!
+//! Every face is sampled at the centres of k x k cells; the distance is that to the closest point of the other surface
+//! whose normal is compatible (angle below 90 degrees), signed by that point's normal. Means weigh samples by area.
+
+use super::LimitSurface;
+use crate::mesh::FaceId;
+use glam::DVec3;
+
+/// The distance at one point of the surface that is measured.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub struct DeviationSample {
+    /// Face of the sample.
+    pub face: FaceId,
+    /// Patch of the face.
+    pub corner: usize,
+    /// Parameter in [0, 1].
+    pub u: f64,
+    /// Parameter in [0, 1].
+    pub v: f64,
+    /// The sample.
+    pub position: DVec3,
+    /// Area of the cell that the sample stands for.
+    pub area: f64,
+    /// Distance to the other surface, positive on the side of its normals.
+    pub signed: f64,
+}
+
+/// A summary of samples. Distances in model units.
+#[derive(Clone, Copy, PartialEq, Default, Debug)]
+pub struct Deviation {
+    /// Largest distance.
+    pub max: f64,
+    /// Root of the mean square distance, weighed by area.
+    pub rms: f64,
+    /// Distance that 95 % of the area does not exceed.
+    pub p95: f64,
+    /// Number of samples.
+    pub samples: usize,
+    /// Where the largest distance is; `None` without samples.
+    pub at: Option<DeviationSample>,
+}
+
+impl Deviation {
+    /// The summary of `samples`.
+    pub fn of(samples: &[DeviationSample]) -> Self {
+        let mut sorted: Vec<(f64, f64)> = samples.iter().map(|s| (s.signed.abs(), s.area)).collect();
+        sorted.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let area: f64 = sorted.iter().map(|entry| entry.1).sum();
+        let square: f64 = sorted.iter().map(|entry| entry.1 * entry.0 * entry.0).sum();
+        let mut covered = 0.0;
+        let p95 = sorted.iter().find(|entry| {
+            covered += entry.1;
+            covered >= 0.95 * area
+        });
+        let at = samples.iter().max_by(|a, b| a.signed.abs().total_cmp(&b.signed.abs()));
+        Self {
+            max: at.map_or(0.0, |sample| sample.signed.abs()),
+            rms: if area > 0.0 { (square / area).sqrt() } else { 0.0 },
+            p95: p95.map_or(0.0, |entry| entry.0),
+            samples: samples.len(),
+            at: at.copied(),
+        }
+    }
+}
+
+/// Samples `from` in the faces that `choose` accepts, `per_side` x `per_side` to a quad and half as many each way to
+/// the quadrants of another face, and measures each to `to`. 8 per side is the usual choice; 0 counts as 1. Samples
+/// for which `to` has no answer (it is empty) are left out.
+pub fn deviation_samples(
+    from: &LimitSurface,
+    choose: impl Fn(FaceId) -> bool,
+    to: &LimitSurface,
+    per_side: usize,
+) -> Vec<DeviationSample> {
+    let mut samples = Vec::new();
+    for face in from.faces().filter(|&face| choose(face)) {
+        let patches = from.patch_count(face);
+        let cells = if patches == 1 { per_side } else { per_side.div_ceil(2) }.max(1);
+        let width = 1.0 / cells as f64;
+        for corner in 0..patches {
+            for cell in 0..cells * cells {
+                let (u, v) = (((cell % cells) as f64 + 0.5) * width, ((cell / cells) as f64 + 0.5) * width);
+                let Some(point) = from.evaluate(face, corner, u, v) else { continue };
+                let Some(signed) = to.signed_distance(point.position, point.normal) else { continue };
+                let area = point.du.cross(point.dv).length() * width * width;
+                samples.push(DeviationSample { face, corner, u, v, position: point.position, area, signed });
+            }
+        }
+    }
+    samples
+}
+
+/// The deviation of `from` (in the faces that `choose` accepts) from `to`, one way; see [`deviation_samples`].
+pub fn deviation(
+    from: &LimitSurface,
+    choose: impl Fn(FaceId) -> bool,
+    to: &LimitSurface,
+    per_side: usize,
+) -> Deviation {
+    Deviation::of(&deviation_samples(from, choose, to, per_side))
+}
+
+/// The deviation both ways: samples of `a` measured to `b` and samples of `b` measured to `a`, together.
+pub fn deviation_both_ways(
+    (a, choose_a): (&LimitSurface, impl Fn(FaceId) -> bool),
+    (b, choose_b): (&LimitSurface, impl Fn(FaceId) -> bool),
+    per_side: usize,
+) -> Deviation {
+    let mut samples = deviation_samples(a, choose_a, b, per_side);
+    samples.extend(deviation_samples(b, choose_b, a, per_side));
+    Deviation::of(&samples)
+}
