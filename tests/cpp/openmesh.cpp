@@ -61,9 +61,9 @@ void compare(std::string const& name, Polygons const& polygons, Mesh const& mesh
         for (std::size_t v = 0; v < polygons.positions.size(); ++v) {
             kept = std::max(kept, distance(found[v], expected[v]));
         }
-        double const all = set_distance(found, expected, 1e-6 * size);
-        check::that(std::max(kept, all) <= tolerance * size, where + " is off by " + std::to_string(std::max(kept, all) / size));
-        std::printf("%-45s level %u off by %.1e of the size\n", name.c_str(), depth, std::max(kept, all) / size);
+        double const off = std::max(kept, set_distance(found, expected, 1e-6 * size)) / size;
+        check::that(off <= tolerance, where + " is off by " + check::number(off));
+        std::printf("%-45s level %u off by %.1e of the size\n", name.c_str(), depth, off);
     }
     ++closed;
 }

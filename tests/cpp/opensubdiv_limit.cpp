@@ -50,12 +50,6 @@ Limit limit_there(Polygons const& polygons, int level) {
     return limit;
 }
 
-std::string number(double value) {
-    char text[32];
-    std::snprintf(text, sizeof text, "%.2e", value);
-    return text;
-}
-
 void compare(std::string const& name, Polygons const& polygons, Mesh const& mesh) {
     double const size = size_of(polygons.positions);
     // One refinement makes all faces quads, which the oracle needs.
@@ -77,7 +71,7 @@ void compare(std::string const& name, Polygons const& polygons, Mesh const& mesh
         }
         double const error = distance(positions[v], there.positions[v]) / size;
         largest = std::max(largest, error);
-        check::that(error <= position_tolerance, where + " is off by " + number(error));
+        check::that(error <= position_tolerance, where + " is off by " + check::number(error));
         if (faces == 0 || there.degenerate[v]) {
             ++left_out;
         } else if (boundary && faces > 2) {
@@ -85,7 +79,8 @@ void compare(std::string const& name, Polygons const& polygons, Mesh const& mesh
         } else {
             double const normal_error = distance(normals[v], there.normals[v]);
             largest_normal = std::max(largest_normal, normal_error);
-            check::that(normal_error <= normal_tolerance, where + ": the normal is off by " + number(normal_error));
+            check::that(normal_error <= normal_tolerance,
+                        where + ": the normal is off by " + check::number(normal_error));
             ++compared;
         }
     }
@@ -100,12 +95,14 @@ void compare(std::string const& name, Polygons const& polygons, Mesh const& mesh
             double const before = distance(normals[v], there.normals[v]);
             double const after = distance(normals[v], deeper.normals[v]);
             check::that(after <= boundary_convergence * before + normal_tolerance,
-                        where + ": OpenSubdiv's normals do not come to ours: " + number(before) + ", " + number(after));
+                        where + ": OpenSubdiv's normals do not come to ours: " + check::number(before) + ", " +
+                            check::number(after));
         } else {
             double const before = distance(positions[v], there.positions[v]);
             double const after = distance(positions[v], deeper.positions[v]);
             check::that(after <= interior_convergence * before + position_tolerance * size,
-                        where + ": OpenSubdiv's points do not come to ours: " + number(before) + ", " + number(after));
+                        where + ": OpenSubdiv's points do not come to ours: " + check::number(before) + ", " +
+                            check::number(after));
         }
     }
 }

@@ -9,8 +9,8 @@ namespace {
 constexpr int depth = 3;
 constexpr double tolerance = 1e-12;  // of the size
 
-// Child faces of a level, each with the vertices in our order: corner, edge that leaves it, face, edge that arrives.
-// OpenSubdiv starts elsewhere, but its child faces know their parents.
+// The vertices of a child face in our order: corner, edge that leaves it, face, edge that arrives. OpenSubdiv starts
+// elsewhere, but knows which vertex stands for the parent face.
 std::vector<int> quad_of(Far::TopologyRefiner const& refiner, int level, int face, int corner) {
     Far::TopologyLevel const& before = refiner.GetLevel(level - 1);
     auto const vertices = refiner.GetLevel(level).GetFaceVertices(before.GetFaceChildFaces(face)[corner]);
@@ -47,32 +47,32 @@ void compare(std::string const& name, Polygons const& polygons, Mesh const& mesh
         }
         for (std::size_t f = 0; f < level.parent_faces.size(); ++f) {
             int const parent = face_there[level.parent_faces[f]];
-            int const corner = static_cast<int>(level.parent_corners[f]);
-            // Corners of quads keep their places in both, by induction: each child begins at its parent's corner here,
-            // while there it keeps the parent's rotation.
-            auto const before = number == 1 ? Far::ConstIndexArray() : refiner->GetLevel(number - 1).GetFaceVertices(parent);
-            int there_corner = corner;
+            int corner = static_cast<int>(level.parent_corners[f]);
             if (number > 1) {
-                int const wanted = vertex_there[levels[number - 1].face_vertices[4 * level.parent_faces[f] + corner]];
-                there_corner = before.FindIndex(wanted);
+                // The parent begins at another of its corners there.
+                auto const vertex = levels[number - 1].face_vertices[4 * level.parent_faces[f] + corner];
+                corner = refiner->GetLevel(number - 1).GetFaceVertices(parent).FindIndex(vertex_there[vertex]);
             }
-            auto const quad = quad_of(*refiner, number, parent, there_corner);
+            auto const quad = quad_of(*refiner, number, parent, corner);
             for (int i = 0; i < 4; ++i) {
                 int& known = next_vertices[level.face_vertices[4 * f + i]];
-                check::that(known == -1 || known == quad[i], where + ": face " + std::to_string(f) + " is connected otherwise");
+                check::that(known == -1 || known == quad[i],
+                            where + ": face " + std::to_string(f) + " is connected otherwise");
                 known = quad[i];
             }
-            next_faces.push_back(refiner->GetLevel(number - 1).GetFaceChildFaces(parent)[there_corner]);
+            next_faces.push_back(refiner->GetLevel(number - 1).GetFaceChildFaces(parent)[corner]);
         }
         for (std::size_t v = 0; v < level.positions.size(); ++v) {
-            double const error = distance(level.positions[v], expected[number][next_vertices[v]]);
-            largest = std::max(largest, error / size);
-            check::that(error <= tolerance * size, where + ": vertex " + std::to_string(v) + " is off by " + std::to_string(error / size));
+            double const error = distance(level.positions[v], expected[number][next_vertices[v]]) / size;
+            largest = std::max(largest, error);
+            check::that(error <= tolerance,
+                        where + ": vertex " + std::to_string(v) + " is off by " + check::number(error));
         }
         vertex_there = std::move(next_vertices);
         face_there = std::move(next_faces);
     }
-    std::printf("%-45s %8zu faces, off by %.1e of the size\n", name.c_str(), levels[depth].parent_faces.size(), largest);
+    std::printf("%-45s %8zu faces, off by %.1e of the size\n", name.c_str(), levels[depth].parent_faces.size(),
+                largest);
 }
 
 }  // namespace

@@ -14,6 +14,13 @@ inline void that(bool holds, std::string const& what) {
     if (++failures <= 50) std::printf("FAILED: %s\n", what.c_str());
 }
 
+// A small number for a message.
+inline std::string number(double value) {
+    char text[32];
+    std::snprintf(text, sizeof text, "%.2e", value);
+    return text;
+}
+
 // The exit code of the program.
 inline int result() {
     std::printf("%d failures\n", failures);
