@@ -76,12 +76,14 @@ struct Found {
     t: f64,
     position: DVec3,
     normal: DVec3,
+    aside: f64,
 }
 
 struct Search<'a> {
     surface: &'a LimitSurface,
     point: DVec3,
     facing: Option<Facing>,
+    radius: f64,
     /// Distance of the best foot so far.
     best: f64,
     /// A distance that some point of the surface is known to have or to undercut.
@@ -111,6 +113,7 @@ impl LimitSurface {
             surface: self,
             point,
             facing,
+            radius: options.radius,
             best: options.radius,
             bound: f64::INFINITY,
             found: None,
@@ -142,9 +145,15 @@ fn box_distance(low: DVec3, high: DVec3, point: DVec3) -> f64 {
 }
 
 impl Search<'_> {
-    /// Nothing at this distance or beyond is wanted.
+    /// Nothing farther than this is wanted. Distances that differ by rounding only are compared by how well they
+    /// are perpendicular, for the distance is flat about its minimum: of two parts that share a border, one has the
+    /// foot and the other the end of its own range, a square root of the rounding away.
+    fn rounding(&self) -> f64 {
+        0.01 * self.surface.tolerance + 4.0 * f64::EPSILON * self.best.min(self.bound)
+    }
+
     fn hopeless(&self, at_least: f64) -> bool {
-        at_least >= self.best || at_least > self.bound
+        at_least > self.best.min(self.bound) + self.rounding()
     }
 
     fn run(&mut self) {
@@ -232,29 +241,30 @@ impl Search<'_> {
     fn offer(&mut self, domain: &Domain, (s, t): (f64, f64), jet: &Jet, point: DVec3, origin: DVec3) {
         let way = jet.position - point;
         let distance = way.length();
-        if distance.is_nan() || distance >= self.best {
+        if distance.is_nan() || distance >= self.radius || self.hopeless(distance) {
             return;
         }
         let normal = jet.du.cross(jet.dv);
+        let unit = normal.normalize_or_zero();
+        let aside = (way - unit * way.dot(unit)).length();
         if let Some(facing) = self.facing {
-            let Some(unit) = normal.try_normalize() else {
-                return;
-            };
-            if unit.dot(facing.normal) <= facing.min_cosine {
-                return;
-            }
-            let aside = (way - unit * way.dot(unit)).length();
-            if aside > 1e3 * self.surface.tolerance && !self.on_rim(domain, s, t) {
+            let compatible = unit.dot(facing.normal) > facing.min_cosine;
+            let foot = aside <= 1e3 * self.surface.tolerance || self.on_rim(domain, s, t);
+            if !compatible || unit == DVec3::ZERO || !foot {
                 return;
             }
         }
-        self.take(Found { domain: *domain, s, t, position: jet.position + origin, normal }, distance);
-    }
-
-    fn take(&mut self, found: Found, distance: f64) {
-        self.best = distance;
-        self.bound = self.bound.min(distance);
-        self.found = Some(found);
+        let better = match &self.found {
+            None => true,
+            Some(found) if (distance - self.best).abs() <= self.rounding() => aside < found.aside,
+            Some(_) => distance < self.best,
+        };
+        if better {
+            self.best = distance;
+            self.bound = self.bound.min(distance);
+            let position = jet.position + origin;
+            self.found = Some(Found { domain: *domain, s, t, position, normal, aside });
+        }
     }
 
     /// True where the frozen surface ends.
@@ -278,9 +288,8 @@ impl Search<'_> {
         let at_vertex = Jet { position: way, du: limit.du, dv: limit.dv, ..Jet::default() };
         let unit = limit.normal.normalize_or_zero();
         let aside = (way - unit * way.dot(unit)).length();
-        if self.facing.is_none() || aside <= 1e3 * self.surface.tolerance {
-            self.offer(&entry.domain, (0.0, 0.0), &at_vertex, DVec3::ZERO, self.point);
-        }
+        // Offered relative to the point itself, for the precision of small distances.
+        self.offer(&entry.domain, (0.0, 0.0), &at_vertex, DVec3::ZERO, self.point);
         // Where the vertex is the foot itself, what is left round it differs by rounding only.
         let is_foot = unit != DVec3::ZERO && aside <= self.surface.tolerance;
         let direction = way.normalize_or_zero();
@@ -296,7 +305,7 @@ impl Search<'_> {
                 ahead = ahead.min((p - point).dot(direction));
                 radius = radius.max(p.length_squared());
             }
-            let slack = if is_foot { 0.05 * self.surface.tolerance } else { 0.0 };
+            let slack = if is_foot { 2.0 * self.rounding() } else { 0.0 };
             if self.hopeless(box_distance(low, high, self.point))
                 || self.hopeless(ahead + slack)
                 || radius.sqrt() <= 0.05 * self.surface.tolerance
@@ -322,9 +331,18 @@ fn minimise(bicubic: &Bicubic, point: DVec3) -> (f64, f64, Jet) {
         let gradient = [way.dot(jet.du), way.dot(jet.dv)];
         // A parameter at its end stays there while the distance falls outwards.
         let free = [0, 1].map(|i| !(at[i] <= 0.0 && gradient[i] >= 0.0 || at[i] >= 1.0 && gradient[i] <= 0.0));
-        let Some((mut step, exact)) = newton_step(&jet, way, gradient, free) else {
+        let Some((mut step, mut exact)) = newton_step(&jet, way, gradient, free) else {
             break;
         };
+        // A parameter that would leave at once waits while the other one moves.
+        let leaves = [0, 1].map(|i| at[i] <= 0.0 && step[i] < 0.0 || at[i] >= 1.0 && step[i] > 0.0);
+        if leaves[0] || leaves[1] {
+            let staying = [free[0] && !leaves[0], free[1] && !leaves[1]];
+            match newton_step(&jet, way, gradient, staying) {
+                Some(other) => (step, exact) = (other.0, false),
+                None => break,
+            }
+        }
         // Shorten the step so that it ends on the border that it crosses first.
         let mut fraction = 1.0f64;
         for i in 0..2 {
@@ -335,11 +353,13 @@ fn minimise(bicubic: &Bicubic, point: DVec3) -> (f64, f64, Jet) {
         }
         step = step.map(|x| x * fraction);
         let before = way.length_squared();
+        // A short step of Newton's needs no check, which rounding would make fail.
+        let trusted = exact && step[0].abs().max(step[1].abs()) < 1e-4;
         let mut moved = false;
         for _ in 0..10 {
             let next = [0, 1].map(|i: usize| (at[i] + step[i]).clamp(0.0, 1.0));
             let next_jet = bicubic.jet(next[0], next[1]);
-            if next_jet.position.distance_squared(point) <= before * (1.0 + 1e-14) + f64::MIN_POSITIVE {
+            if trusted || next_jet.position.distance_squared(point) <= before {
                 (at, jet, moved) = (next, next_jet, true);
                 break;
             }

@@ -4,7 +4,7 @@ use super::tree::Tree;
 use super::{Bicubic, Corner, LimitSurface, Patch};
 use crate::mesh::{FaceId, Mesh};
 use crate::subdivision::patch::{Quarter, from_quarter};
-use crate::subdivision::patch_corner::Points;
+use crate::subdivision::patch_corner::{Points, VertexLimit};
 use glam::DVec3;
 
 /// Levels of pieces that are stored beside an extraordinary vertex; deeper ones are made on demand.
@@ -55,6 +55,8 @@ pub(super) struct Piece {
 pub(super) struct CornerEntry {
     pub(super) corner: Corner,
     pub(super) domain: Domain,
+    /// Tangents at the vertex in the parameters of the whole quarter.
+    pub(super) limit: VertexLimit,
 }
 
 #[derive(Clone, Debug)]
@@ -159,6 +161,7 @@ impl LimitSurface {
 
     fn add_corner(&mut self, mut corner: Corner, mut domain: Domain, scratch: &mut Points) -> QuarterEntry {
         let first_piece = self.pieces.len() as u32;
+        let limit = corner.vertex_limit();
         for _ in 0..LEVELS {
             let sides = corner.refine(scratch);
             for (side, grid) in sides.iter().enumerate() {
@@ -167,7 +170,7 @@ impl LimitSurface {
             }
             domain = domain.inner();
         }
-        self.corners.push(CornerEntry { corner, domain });
+        self.corners.push(CornerEntry { corner, domain, limit });
         QuarterEntry::Corner { first_piece, corner: self.corners.len() as u32 - 1 }
     }
 

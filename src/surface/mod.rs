@@ -118,8 +118,14 @@ impl LimitSurface {
                     let jet = piece(first_piece + 3 * level + side).jet(a, b).scaled(scale);
                     return smooth(jet.from_quarter(quarter));
                 }
-                let mut found = evaluate_corner(&self.corners[corner as usize].corner, x, y);
-                found.jet = found.jet.scaled(scale).from_quarter(quarter);
+                let entry = &self.corners[corner as usize];
+                let mut found = evaluate_corner(&entry.corner, x, y);
+                found.jet = if found.smooth {
+                    found.jet.scaled(scale)
+                } else {
+                    Jet { du: entry.limit.du, dv: entry.limit.dv, ..found.jet }
+                };
+                found.jet = found.jet.from_quarter(quarter);
                 found.into()
             }
         }
