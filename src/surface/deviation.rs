@@ -6,6 +6,7 @@
 use super::LimitSurface;
 use crate::mesh::FaceId;
 use glam::DVec3;
+use serde::Serialize;
 
 /// The distance at one point of the surface that is measured.
 #[derive(Clone, Copy, PartialEq, Debug)]
@@ -27,7 +28,7 @@ pub struct DeviationSample {
 }
 
 /// A summary of samples. Distances in model units.
-#[derive(Clone, Copy, PartialEq, Default, Debug)]
+#[derive(Clone, Copy, PartialEq, Default, Debug, Serialize)]
 pub struct Deviation {
     /// Largest distance.
     pub max: f64,
@@ -38,6 +39,7 @@ pub struct Deviation {
     /// Number of samples.
     pub samples: usize,
     /// Where the largest distance is; `None` without samples.
+    #[serde(skip)]
     pub at: Option<DeviationSample>,
 }
 

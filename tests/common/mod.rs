@@ -24,3 +24,27 @@ pub fn content(path: &std::path::Path) -> Vec<u8> {
         .expect("a file of the catalogue unpacks");
     unpacked
 }
+
+/// The control mesh in a file of `../shared/data` or of `tests/data`.
+#[allow(dead_code, reason = "not every test that shares this module reads files")]
+pub fn load(path: &std::path::Path) -> welt::mesh::Mesh {
+    welt::io::import(path, &welt::io::ImportOptions::default()).expect("a clean mesh").mesh
+}
+
+/// The `.obj` files of one folder of `../shared/data` that the kernel can hold, by name.
+#[allow(dead_code, reason = "not every test that shares this module reads files")]
+pub fn clean_cages(data: &std::path::Path, folder: &str) -> Vec<(String, welt::mesh::Mesh)> {
+    let mut paths: Vec<PathBuf> = std::fs::read_dir(data.join(folder))
+        .expect("a folder of the catalogue")
+        .map(|entry| entry.expect("an entry").path())
+        .filter(|path| path.extension().is_some_and(|extension| extension == "obj"))
+        .collect();
+    paths.sort();
+    paths
+        .into_iter()
+        .filter_map(|path| {
+            let mesh = welt::io::import(&path, &welt::io::ImportOptions::default()).ok()?.mesh;
+            Some((path.file_name()?.to_string_lossy().into_owned(), mesh))
+        })
+        .collect()
+}

@@ -1,0 +1,262 @@
+// Times welt (through its C ABI) beside OpenSubdiv and OpenMesh, in one run and on the same meshes: tori of quads.
+// Medians; memory is fresh in every run, as it is for a program that does the work once.
+
+#include <welt.h>
+
+#include <OpenMesh/Core/IO/MeshIO.hh>
+#include <OpenMesh/Core/Mesh/PolyMesh_ArrayKernelT.hh>
+#include <OpenMesh/Core/Mesh/Traits.hh>
+#include <opensubdiv/far/primvarRefiner.h>
+#include <opensubdiv/far/topologyDescriptor.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdint>
+#include <cstdio>
+#include <cstdlib>
+#include <functional>
+#include <memory>
+#include <sstream>
+#include <string>
+#include <vector>
+
+namespace {
+
+namespace Far = OpenSubdiv::Far;
+namespace Sdc = OpenSubdiv::Sdc;
+
+struct Quads {
+    std::vector<double> positions;
+    std::vector<std::uint32_t> sizes;
+    std::vector<std::uint32_t> vertices;
+
+    std::size_t faces() const { return sizes.size(); }
+    std::size_t points() const { return positions.size() / 3; }
+};
+
+Quads torus(std::uint32_t n, std::uint32_t m) {
+    const double turn = 2 * std::acos(-1.0);
+    Quads quads;
+    for (std::uint32_t j = 0; j < m; ++j) {
+        for (std::uint32_t i = 0; i < n; ++i) {
+            const double u = turn * i / n, v = turn * j / m, r = 4 + std::cos(u);
+            for (double x : {r * std::cos(v), r * std::sin(v), std::sin(u)}) quads.positions.push_back(x);
+            const auto at = [&](std::uint32_t a, std::uint32_t b) { return (b % m) * n + a % n; };
+            quads.sizes.push_back(4);
+            for (std::uint32_t k : {at(i, j), at(i, j + 1), at(i + 1, j + 1), at(i + 1, j)}) quads.vertices.push_back(k);
+        }
+    }
+    return quads;
+}
+
+double seconds(const std::function<void()>& work) {
+    const auto start = std::chrono::steady_clock::now();
+    work();
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+/// The median time of `runs` runs; `work` says itself what of it counts.
+double median(int runs, const std::function<double()>& work) {
+    std::vector<double> times;
+    for (int i = 0; i < runs; ++i) times.push_back(work());
+    std::sort(times.begin(), times.end());
+    return times[times.size() / 2];
+}
+
+void check(std::int32_t status) {
+    if (status != WELT_OK) {
+        std::fprintf(stderr, "welt: status %d\n", status);
+        std::exit(1);
+    }
+}
+
+struct MeshDeleter {
+    void operator()(welt_mesh* mesh) const { welt_mesh_free(mesh); }
+};
+using WeltMesh = std::unique_ptr<welt_mesh, MeshDeleter>;
+
+WeltMesh build(const Quads& quads) {
+    welt_mesh* mesh = nullptr;
+    check(welt_mesh_create(quads.sizes.data(), quads.faces(), quads.vertices.data(), quads.vertices.size(),
+                           quads.positions.data(), quads.points(), 0, &mesh, nullptr));
+    return WeltMesh(mesh);
+}
+
+struct DoubleTraits : OpenMesh::DefaultTraits {
+    using Point = OpenMesh::Vec3d;
+};
+using OpenMeshPolygons = OpenMesh::PolyMesh_ArrayKernelT<DoubleTraits>;
+
+OpenMeshPolygons build_open_mesh(const Quads& quads) {
+    OpenMeshPolygons mesh;
+    mesh.reserve(quads.points(), 2 * quads.faces(), quads.faces());
+    std::vector<OpenMeshPolygons::VertexHandle> handles;
+    handles.reserve(quads.points());
+    for (std::size_t i = 0; i < quads.points(); ++i) {
+        handles.push_back(mesh.add_vertex(
+            {quads.positions[3 * i], quads.positions[3 * i + 1], quads.positions[3 * i + 2]}));
+    }
+    std::vector<OpenMeshPolygons::VertexHandle> face(4);
+    for (std::size_t f = 0; f < quads.faces(); ++f) {
+        for (std::size_t k = 0; k < 4; ++k) face[k] = handles[quads.vertices[4 * f + k]];
+        mesh.add_face(face);
+    }
+    return mesh;
+}
+
+std::unique_ptr<Far::TopologyRefiner> build_refiner(const Quads& quads) {
+    const std::vector<int> sizes(quads.sizes.begin(), quads.sizes.end());
+    const std::vector<int> vertices(quads.vertices.begin(), quads.vertices.end());
+    Far::TopologyDescriptor descriptor;
+    descriptor.numVertices = static_cast<int>(quads.points());
+    descriptor.numFaces = static_cast<int>(quads.faces());
+    descriptor.numVertsPerFace = sizes.data();
+    descriptor.vertIndicesPerFace = vertices.data();
+    Sdc::Options options;
+    options.SetVtxBoundaryInterpolation(Sdc::Options::VTX_BOUNDARY_EDGE_ONLY);
+    using Factory = Far::TopologyRefinerFactory<Far::TopologyDescriptor>;
+    return std::unique_ptr<Far::TopologyRefiner>(
+        Factory::Create(descriptor, Factory::Options(Sdc::SCHEME_CATMARK, options)));
+}
+
+struct Point {
+    double x[3] = {0, 0, 0};
+    void Clear() { x[0] = x[1] = x[2] = 0; }
+    void AddWithWeight(const Point& p, double w) {
+        for (int i = 0; i < 3; ++i) x[i] += w * p.x[i];
+    }
+};
+
+std::vector<Point> points(const Quads& quads) {
+    std::vector<Point> result(quads.points());
+    for (std::size_t i = 0; i < result.size(); ++i) {
+        std::copy_n(&quads.positions[3 * i], 3, result[i].x);
+    }
+    return result;
+}
+
+void row(const char* work, std::size_t faces, double ours, const char* peer, double theirs) {
+    std::printf("| %-44s | %8zu | %9.2f | %-22s | %9.2f | %5.1f |\n", work, faces, 1e3 * ours, peer, 1e3 * theirs,
+                theirs / ours);
+    std::fflush(stdout);
+}
+
+void half_edges(const Quads& quads, int runs) {
+    const double ours = median(runs, [&] {
+        WeltMesh mesh;
+        return seconds([&] { mesh = build(quads); });
+    });
+    const double open_mesh = median(runs, [&] {
+        OpenMeshPolygons mesh;
+        return seconds([&] { mesh = build_open_mesh(quads); });
+    });
+    row("half-edges from face lists", quads.faces(), ours, "OpenMesh add_face", open_mesh);
+    const double osd = median(runs, [&] {
+        std::unique_ptr<Far::TopologyRefiner> refiner;
+        return seconds([&] { refiner = build_refiner(quads); });
+    });
+    row("half-edges from face lists", quads.faces(), ours, "OpenSubdiv refiner", osd);
+}
+
+void reading(const Quads& quads, int runs) {
+    std::ostringstream text;
+    text.precision(17);
+    for (std::size_t i = 0; i < quads.points(); ++i) {
+        text << "v " << quads.positions[3 * i] << ' ' << quads.positions[3 * i + 1] << ' ' << quads.positions[3 * i + 2]
+             << '\n';
+    }
+    for (std::size_t f = 0; f < quads.faces(); ++f) {
+        text << 'f';
+        for (std::size_t k = 0; k < 4; ++k) text << ' ' << quads.vertices[4 * f + k] + 1;
+        text << '\n';
+    }
+    const std::string obj = text.str();
+    const double ours = median(runs, [&] {
+        WeltMesh mesh;
+        return seconds([&] {
+            welt_mesh* handle = nullptr;
+            check(welt_mesh_import_memory("torus.obj", SIZE_MAX, WELT_FORMAT_OBJ,
+                                          reinterpret_cast<const std::uint8_t*>(obj.data()), obj.size(), nullptr,
+                                          &handle, nullptr, nullptr));
+            mesh.reset(handle);
+        });
+    });
+    const double open_mesh = median(runs, [&] {
+        std::istringstream in(obj);
+        OpenMeshPolygons mesh;
+        return seconds([&] {
+            OpenMesh::IO::Options options;
+            if (!OpenMesh::IO::read_mesh(mesh, in, ".obj", options)) std::exit(1);
+        });
+    });
+    row("OBJ text in memory to half-edges", quads.faces(), ours, "OpenMesh read_mesh", open_mesh);
+}
+
+void refining(const Quads& quads, int levels, int runs) {
+    const WeltMesh mesh = build(quads);
+    const double ours = median(runs, [&] {
+        welt_refinement* refinement = nullptr;
+        const double time = seconds([&] {
+            check(welt_refinement_create(mesh.get(), levels, nullptr, &refinement, nullptr));
+        });
+        welt_refinement_free(refinement);
+        return time;
+    });
+    const std::vector<Point> control = points(quads);
+    const double osd = median(runs, [&] {
+        auto refiner = build_refiner(quads);
+        return seconds([&] {
+            refiner->RefineUniform(Far::TopologyRefiner::UniformOptions(levels));
+            const Far::PrimvarRefinerReal<double> primvar(*refiner);
+            std::vector<Point> from = control;
+            for (int level = 1; level <= levels; ++level) {
+                std::vector<Point> to(refiner->GetLevel(level).GetNumVertices());
+                primvar.Interpolate(level, from, to);
+                from.swap(to);
+            }
+        });
+    });
+    row("refinement to level 3, topology and positions", quads.faces(), ours, "OpenSubdiv", osd);
+}
+
+void limits(const Quads& quads, int runs) {
+    const WeltMesh mesh = build(quads);
+    std::vector<double> positions(quads.positions.size()), normals(quads.positions.size());
+    const double ours = median(runs, [&] {
+        return seconds([&] {
+            check(welt_mesh_limit_positions(mesh.get(), positions.data(), positions.size(), nullptr));
+            check(welt_mesh_limit_normals(mesh.get(), normals.data(), normals.size(), nullptr));
+        });
+    });
+    auto refiner = build_refiner(quads);
+    Far::TopologyRefiner::UniformOptions options(1);
+    options.fullTopologyInLastLevel = true;
+    refiner->RefineUniform(options);
+    const Far::PrimvarRefinerReal<double> primvar(*refiner);
+    const std::vector<Point> control = points(quads);
+    std::vector<Point> level1(refiner->GetLevel(1).GetNumVertices());
+    primvar.Interpolate(1, control, level1);
+    std::vector<Point> limit(level1.size()), du(level1.size()), dv(level1.size());
+    const double osd = median(runs, [&] { return seconds([&] { primvar.Limit(level1, limit, du, dv); }); });
+    // OpenSubdiv gives limits on the last level only, which has four times the vertices.
+    row("limit points and normals at vertices", quads.faces(), ours, "OpenSubdiv Limit / 4", osd / 4);
+}
+
+}  // namespace
+
+int main() {
+    std::printf("| %-44s | %8s | %9s | %-22s | %9s | %5s |\n", "work", "quads", "welt, ms", "peer", "peer, ms", "ratio");
+    std::printf("|---|---|---|---|---|---|\n");
+    struct Size {
+        std::uint32_t n, m;
+        int runs;
+    };
+    for (const Size size : {Size{100, 100, 15}, Size{200, 500, 9}, Size{200, 5000, 5}}) {
+        const Quads quads = torus(size.n, size.m);
+        half_edges(quads, size.runs);
+        reading(quads, size.runs);
+        limits(quads, size.runs);
+        if (quads.faces() <= 100000) refining(quads, 3, size.runs);
+    }
+}

@@ -1,0 +1,113 @@
+//! The boundary of the frozen surface as curves: boundary vertices stay on them.
+
+use crate::mesh::{FaceId, Mesh};
+use glam::DVec3;
+
+/// The limit curves of the boundary edges near a feature: uniform cubic B-splines (boundary rule edge-only).
+#[derive(Clone, Default, Debug)]
+pub struct BoundaryCurves {
+    /// Control points of one segment per boundary edge.
+    segments: Vec<[DVec3; 4]>,
+}
+
+/// Parameters at which a segment is looked at before Newton takes over.
+const STARTS: usize = 8;
+const NEWTON_STEPS: usize = 20;
+
+impl BoundaryCurves {
+    /// The boundary curves along `faces`.
+    pub fn around(mesh: &Mesh, faces: &[FaceId]) -> Self {
+        let segments = faces
+            .iter()
+            .flat_map(|&f| mesh.face_half_edges(f))
+            .map(|h| h.mate())
+            .filter(|&h| mesh.face(h).is_boundary())
+            .map(|h| {
+                [mesh.prev(h), h, mesh.next(h), mesh.next(mesh.next(h))]
+                    .map(|h| mesh.position(mesh.source(h)))
+            })
+            .collect();
+        Self { segments }
+    }
+
+    /// The point of the curves closest to `point`; `None` where there is no boundary.
+    pub fn closest(&self, point: DVec3) -> Option<DVec3> {
+        let mut best: Option<(f64, DVec3)> = None;
+        for segment in &self.segments {
+            let (mut u, mut least) = (0.0, f64::INFINITY);
+            for i in 0..=STARTS {
+                let start = i as f64 / STARTS as f64;
+                let distance = evaluate(segment, start)[0].distance_squared(point);
+                if distance < least {
+                    (u, least) = (start, distance);
+                }
+            }
+            for _ in 0..NEWTON_STEPS {
+                let [p, d, dd] = evaluate(segment, u);
+                let slope = (p - point).dot(d);
+                let curvature = d.length_squared() + (p - point).dot(dd);
+                if curvature <= 0.0 {
+                    break;
+                }
+                let next = (u - slope / curvature).clamp(0.0, 1.0);
+                if (next - u).abs() < 1e-15 {
+                    break;
+                }
+                u = next;
+            }
+            let foot = evaluate(segment, u)[0];
+            let distance = foot.distance_squared(point);
+            if best.is_none_or(|(least, _)| distance < least) {
+                best = Some((distance, foot));
+            }
+        }
+        best.map(|(_, foot)| foot)
+    }
+}
+
+/// Position, first and second derivative of a uniform cubic B-spline segment at `u` in [0, 1].
+pub(crate) fn evaluate(c: &[DVec3; 4], u: f64) -> [DVec3; 3] {
+    let combine = |w: [f64; 4]| c[0] * w[0] + c[1] * w[1] + c[2] * w[2] + c[3] * w[3];
+    let v = 1.0 - u;
+    let (u2, u3) = (u * u, u * u * u);
+    [
+        combine([
+            v * v * v / 6.0,
+            (3.0 * u3 - 6.0 * u2 + 4.0) / 6.0,
+            (-3.0 * u3 + 3.0 * u2 + 3.0 * u + 1.0) / 6.0,
+            u3 / 6.0,
+        ]),
+        combine([
+            -v * v / 2.0,
+            (3.0 * u2 - 4.0 * u) / 2.0,
+            (-3.0 * u2 + 2.0 * u + 1.0) / 2.0,
+            u2 / 2.0,
+        ]),
+        combine([v, 3.0 * u - 2.0, -3.0 * u + 1.0, u]),
+    ]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn evaluates_the_uniform_cubic_b_spline() {
+        let c = [0.0, 1.0, 2.0, 3.0].map(|x| DVec3::new(x, x * x, 1.0));
+        // Linear precision, and the known value (1 + 4 + 1)/6 of the squares at the knot: x^2 + 1/3.
+        let [p, d, dd] = evaluate(&c, 0.0);
+        assert!((p - DVec3::new(1.0, 1.0 + 1.0 / 3.0, 1.0)).length() < 1e-15);
+        assert!((d - DVec3::new(1.0, 2.0, 0.0)).length() < 1e-15);
+        assert!((dd - DVec3::new(0.0, 2.0, 0.0)).length() < 1e-15);
+    }
+
+    #[test]
+    fn closest_on_a_straight_boundary() {
+        let curves = BoundaryCurves { segments: vec![[0.0, 1.0, 2.0, 3.0].map(|x| DVec3::new(x, 0.0, 0.0))] };
+        let foot = curves.closest(DVec3::new(1.3, 5.0, 2.0)).expect("a boundary");
+        assert!((foot - DVec3::new(1.3, 0.0, 0.0)).length() < 1e-12);
+        let end = curves.closest(DVec3::new(-4.0, 0.0, 0.0)).expect("a boundary");
+        assert!((end - DVec3::new(1.0, 0.0, 0.0)).length() < 1e-12);
+        assert!(BoundaryCurves::default().closest(DVec3::ZERO).is_none());
+    }
+}
