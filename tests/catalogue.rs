@@ -26,7 +26,10 @@ struct Row<'a> {
 
 impl<'a> Row<'a> {
     fn column(&self, name: &str) -> &'a str {
-        let names = ["file", "key", "source", "V", "F", "arity", "val", "bnd", "comp", "genus", "nm", "creases", "notes"];
+        let names = [
+            "file", "key", "source", "V", "F", "arity", "val", "bnd", "comp", "genus", "nm", "creases",
+            "notes",
+        ];
         let place = names.iter().position(|&n| n == name).expect("a column of the catalogue");
         self.columns[place]
     }
@@ -89,7 +92,11 @@ fn check(row: &Row, inspection: &Inspection) -> Vec<String> {
     same("genus", row.column("genus").into(), genus);
     same("isolated", row.noted("isolated v").to_string(), inspection.isolated_vertices.len().to_string());
     same("zero-area", row.noted("zero-area f").to_string(), inspection.zero_area_faces.len().to_string());
-    same("coincident", row.noted("coincident v").to_string(), inspection.coincident_vertices.len().to_string());
+    same(
+        "coincident",
+        row.noted("coincident v").to_string(),
+        inspection.coincident_vertices.len().to_string(),
+    );
     let count = |which: fn(&Defect) -> bool| inspection.defects.iter().filter(|d| which(&d.defect)).count();
     let (many_edges, fans) = row.column("nm").split_once('/').unwrap_or_default();
     same("nm edges", many_edges.into(), count(|d| matches!(d, Defect::EdgeWithManyFaces { .. })).to_string());

@@ -21,8 +21,14 @@ const MEND: &str = "mend these in the modeller, or import with repair";
 
 /// Files of the collection that are refused, with a part of the message.
 const MESSAGES: [(&str, &str); 17] = [
-    ("gen_bad_index_1e19.obj", ":9:9: a face names vertex 10000000000000000000, but the file has only 8 vertices"),
-    ("gen_bad_index_big.obj", ":9:1: corner 4 of the face names vertex 99, but the file has only 8 vertices; correct"),
+    (
+        "gen_bad_index_1e19.obj",
+        ":9:9: a face names vertex 10000000000000000000, but the file has only 8 vertices",
+    ),
+    (
+        "gen_bad_index_big.obj",
+        ":9:1: corner 4 of the face names vertex 99, but the file has only 8 vertices; correct",
+    ),
     ("gen_bad_index_zero.obj", ":9:3: a face names vertex 0, but OBJ files count vertices from 1; correct"),
     ("gen_nan_inf.obj", ":1:3: the coordinate NaN is not a finite number; write 'v x y z'"),
     ("gen_not_a_number.obj", ":1:3: 'a' is not a number; write 'v x y z' with three finite numbers"),
@@ -31,7 +37,10 @@ const MESSAGES: [(&str, &str); 17] = [
     ("gen_one_vertex_face.obj", "line 9: face 0 has 1 vertices; a face needs at least 3"),
     ("gen_two_vertex_face.obj", "line 9: face 0 has 2 vertices; a face needs at least 3"),
     ("tm_notenoughindices.obj", "line 9: face 0 has 2 vertices"),
-    ("tol_invalid-face-definition.obj", "line 15: face 0 has 1 vertices; a face needs at least 3; line 18: face 1 has 2"),
+    (
+        "tol_invalid-face-definition.obj",
+        "line 15: face 0 has 1 vertices; a face needs at least 3; line 18: face 1 has 2",
+    ),
     ("as_box_longline.obj", "face 0 names vertex 0 twice"),
     ("gen_cube_one_flipped.obj", "lines 10, 12: faces 0, 2 run along edge 0-1 in the same direction"),
     ("gen_moebius_quads.obj", "run along edge"),
@@ -119,10 +128,19 @@ fn messages_name_place_and_remedy() {
     for (text, part) in [
         ("v 1 2\n", "a.obj:1:6: a vertex with fewer than three coordinates; write 'v x y z'"),
         ("v 0 0 1e999\n", "a.obj:1:7: the coordinate inf is not a finite number"),
-        ("v 0 0 0\nf 1 -1 -2\n", "a.obj:2:8: a face names vertex -2, but only 1 vertices come before it; correct"),
-        ("v 0 0 0\nf 1 x 2\n", "a.obj:2:5: 'x' is not a corner of a face; write each corner as v, v/vt, v//vn or v/vt/vn"),
+        (
+            "v 0 0 0\nf 1 -1 -2\n",
+            "a.obj:2:8: a face names vertex -2, but only 1 vertices come before it; correct",
+        ),
+        (
+            "v 0 0 0\nf 1 x 2\n",
+            "a.obj:2:5: 'x' is not a corner of a face; write each corner as v, v/vt, v//vn or v/vt/vn",
+        ),
         ("v 0 0 0\nf 1/2/3/4 2 3\n", "a.obj:2:3: '1/2/3/4' is not a corner"),
-        ("\x7fELF\x02 garbage\n", "a.obj:1:1: '?ELF?' is no OBJ statement, and the file has none; check that this is an OBJ"),
+        (
+            "\x7fELF\x02 garbage\n",
+            "a.obj:1:1: '?ELF?' is no OBJ statement, and the file has none; check that this is an OBJ",
+        ),
         ("t crease 2/1/0 0 1 1\n", "a.obj:1:18: a tag names vertex 1, but the file has 0"),
         ("v 0 0 0\nt crease 2/1/0 0\n", "a vertex number is missing"),
         ("v 0 0 0\nt corner 1/1/0 0 -1\n", "a sharpness is missing or not a number of 0 or more"),
@@ -132,9 +150,14 @@ fn messages_name_place_and_remedy() {
         let found = message(text);
         assert!(found.contains(part), "{part}\nis not in\n{found}");
     }
-    assert!(message(&format!("{cube}f 1 2 3\nf 1 2 3\n")).contains("lines 4, 5: faces 0, 1 run along edge 0-1"));
+    assert!(
+        message(&format!("{cube}f 1 2 3\nf 1 2 3\n")).contains("lines 4, 5: faces 0, 1 run along edge 0-1")
+    );
     let three = message(&format!("{cube}v 0 0 1\nv 0 0 2\nf 1 2 3\nf 2 1 4\nf 1 2 5\n"));
-    assert!(three.contains("lines 6, 7, 8: edge 0-1 has 3 faces (0, 1, 2); a surface has at most 2"), "{three}");
+    assert!(
+        three.contains("lines 6, 7, 8: edge 0-1 has 3 faces (0, 1, 2); a surface has at most 2"),
+        "{three}"
+    );
 }
 
 #[test]

@@ -1,11 +1,11 @@
 //! Reads OBJ files statement by statement, in one pass over the bytes.
 
 use super::sets::{SetStatement, Sets};
+use crate::io::Limits;
 use crate::io::error::ImportError;
 use crate::io::report::{IgnoredKind, ImportReport};
 use crate::io::source::{Lines, Source};
 use crate::io::text::{Cursor, Fault, Place, shown};
-use crate::io::Limits;
 use crate::mesh::Polygons;
 use glam::{DVec2, DVec3};
 
