@@ -1,1 +1,33 @@
-//! The script language of rule actions: a subset of GML.
+//! The script language of rule actions: a subset of the Generative Modeling Language (Havemann 2005).
+//!
+//! A script is read by [`compile`] into a [`Program`], which a [`Machine`] runs on a mesh. `docs/rules.md` is the
+//! reference of the language.
+
+mod arithmetic;
+mod budget;
+mod collection;
+mod compile;
+mod control;
+mod dispatch;
+mod edit;
+mod graph;
+mod kind;
+mod lex;
+mod machine;
+mod program;
+mod query;
+mod source;
+mod stack;
+mod value;
+mod vector;
+mod word;
+
+pub use budget::{Budget, Stop};
+pub use compile::{Scope, compile};
+pub use machine::{Environment, Failure, Fault, Machine, show_node};
+pub use program::{Program, StringId, Strings};
+pub use source::{Diagnostic, Source, Span};
+pub use value::Value;
+
+pub(crate) use compile::{compile_tokens, is_word};
+pub(crate) use lex::{Cursor, script};

@@ -1,1 +1,19 @@
-//! Graph grammar rules: parse, check, match, rewrite.
+//! Graph grammar rules: a pattern, conditions, and a script that changes the mesh where the pattern matches
+//! (Thaller, Augsdoerfer, Fellner 2016, section 5.2).
+//!
+//! [`RuleSet::parse`] reads a rule file and checks it; [`run`] applies the rules to a mesh until none matches. A rule
+//! starts its search at the most selective attribute of its pattern, through an index, and after an application only
+//! what can see the change is examined again: cost follows the marks, not the mesh. `docs/rules.md` is the reference.
+
+mod error;
+mod parse;
+mod pattern;
+mod plan;
+mod queue;
+mod ruleset;
+mod run;
+mod search;
+
+pub use error::{Place, RulesError, RunError};
+pub use ruleset::{Loader, Parameter, Rule, RuleSet};
+pub use run::{Limits, Outcome, RunOptions, run};

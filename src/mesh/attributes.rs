@@ -45,6 +45,8 @@ pub(crate) struct Attributes {
     columns: FxHashMap<(Domain, Symbol), Column>,
     links: FxHashMap<(Symbol, Node), SmallVec<[Node; 1]>>,
     back_links: FxHashMap<(Symbol, Node), SmallVec<[Node; 1]>>,
+    /// Nodes from which at least one link starts, per label.
+    linked: FxHashMap<Symbol, BTreeSet<Node>>,
     /// Labels that carry at least one link ever, so that removing an element looks at these only.
     labels: Vec<Symbol>,
 }
@@ -121,6 +123,16 @@ impl Attributes {
         self.links.get(&(label, from)).map_or(&[], |nodes| nodes.as_slice())
     }
 
+    /// Ids of the nodes from which a link starts, ascending.
+    pub(crate) fn with_link(&self, domain: Domain, label: Symbol) -> impl Iterator<Item = u32> {
+        let ends = Node::new(domain, 0)..=Node::new(domain, u32::MAX);
+        self.linked
+            .get(&label)
+            .into_iter()
+            .flat_map(move |nodes| nodes.range(ends.clone()))
+            .map(|node| node.id())
+    }
+
     pub(crate) fn back_links(&self, to: Node, label: Symbol) -> &[Node] {
         self.back_links.get(&(label, to)).map_or(&[], |nodes| nodes.as_slice())
     }
@@ -135,12 +147,18 @@ impl Attributes {
         let back = self.back_links.entry((label, to)).or_default();
         if present {
             nodes.push(to);
+            self.linked.entry(label).or_default().insert(from);
             back.push(from);
             if !self.labels.contains(&label) {
                 self.labels.push(label);
             }
         } else {
             nodes.retain(|node| *node != to);
+            if nodes.is_empty()
+                && let Some(linked) = self.linked.get_mut(&label)
+            {
+                linked.remove(&from);
+            }
             back.retain(|node| *node != from);
         }
         true
@@ -177,6 +195,7 @@ impl Attributes {
         }
         let old = std::mem::take(&mut self.links);
         self.back_links.clear();
+        self.linked.clear();
         // Sorted so that the order of several links from one node does not depend on hashing.
         let mut links: Vec<_> = old.into_iter().collect();
         links.sort_unstable_by_key(|(key, _)| *key);

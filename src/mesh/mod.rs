@@ -248,6 +248,11 @@ impl Mesh {
         self.attributes.with_name(domain, name)
     }
 
+    /// Ids of the nodes of kind `domain` from which a link with this label starts, ascending.
+    pub fn nodes_with_link(&self, domain: Domain, label: Symbol) -> impl Iterator<Item = u32> {
+        self.attributes.with_link(domain, label)
+    }
+
     /// Names of the attributes that `node` carries.
     pub fn attribute_names(&self, node: Node) -> Vec<Symbol> {
         self.attributes.names_of(node)

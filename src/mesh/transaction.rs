@@ -107,6 +107,16 @@ impl Mesh {
             .flatten()
     }
 
+    /// Vertices that were moved since `checkpoint`, in order of change, with repetitions.
+    pub fn moved_since(&self, checkpoint: Checkpoint) -> impl Iterator<Item = VertexId> {
+        self.log.changes[checkpoint.changes.min(self.log.changes.len())..].iter().filter_map(|change| {
+            match change {
+                Change::Position { id } => Some(VertexId(*id)),
+                _ => None,
+            }
+        })
+    }
+
     /// One more id that nothing uses any longer.
     pub(super) fn add_hole(&mut self) {
         self.holes += 1;

@@ -1,0 +1,75 @@
+//! How much work a run may do before it is stopped.
+
+use crate::job::Job;
+use std::time::Instant;
+
+/// Steps between two looks at the clock and at the job.
+const SLICE: u64 = 1 << 14;
+
+/// What ended a run from outside.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum Stop {
+    /// All steps were used.
+    Steps,
+    /// The time was used.
+    Time,
+    /// The caller cancelled.
+    Cancelled,
+}
+
+/// Steps that scripts and searches may still take. One step is one operation of a script, one element copied by it,
+/// or one step of a search for matches.
+#[derive(Debug)]
+pub struct Budget<'a> {
+    /// Steps until the clock is looked at.
+    slice: u64,
+    left: u64,
+    deadline: Option<Instant>,
+    job: Option<&'a Job>,
+}
+
+impl<'a> Budget<'a> {
+    /// `steps` steps, until `deadline`, as long as `job` is not cancelled.
+    pub fn new(steps: u64, deadline: Option<Instant>, job: Option<&'a Job>) -> Self {
+        Self { slice: 0, left: steps, deadline, job }
+    }
+
+    /// Takes one step.
+    ///
+    /// # Errors
+    /// The reason to stop.
+    #[inline]
+    pub fn spend(&mut self) -> Result<(), Stop> {
+        self.spend_many(1)
+    }
+
+    /// Takes `count` steps at once.
+    ///
+    /// # Errors
+    /// The reason to stop.
+    #[inline]
+    pub fn spend_many(&mut self, count: u64) -> Result<(), Stop> {
+        while self.slice < count {
+            self.refill()?;
+        }
+        self.slice -= count;
+        Ok(())
+    }
+
+    #[cold]
+    fn refill(&mut self) -> Result<(), Stop> {
+        if self.job.is_some_and(Job::is_cancelled) {
+            return Err(Stop::Cancelled);
+        }
+        if self.deadline.is_some_and(|deadline| Instant::now() >= deadline) {
+            return Err(Stop::Time);
+        }
+        if self.left == 0 {
+            return Err(Stop::Steps);
+        }
+        let more = self.left.min(SLICE);
+        self.left -= more;
+        self.slice += more;
+        Ok(())
+    }
+}

@@ -1,0 +1,102 @@
+//! Words that change the mesh: Euler operators, positions, sharpness.
+
+use super::kind::Kinds;
+use super::machine::{Execution, Fault, error};
+use super::value::Value;
+use crate::mesh::{EulerError, HalfEdgeId, Mesh, Node, VertexId};
+use glam::DVec3;
+
+impl Execution<'_, '_, '_> {
+    pub(super) fn make_vefs(&mut self) -> Result<(), Fault> {
+        let p1 = self.pop_vec3()?;
+        let p0 = self.pop_vec3()?;
+        let e = self.environment.mesh.make_vefs(p0, p1)?;
+        self.push_half_edge(e)
+    }
+
+    pub(super) fn make_ev(&mut self) -> Result<(), Fault> {
+        let p = self.pop_vec3()?;
+        let e1 = self.pop_half_edge()?;
+        let e0 = self.pop_half_edge()?;
+        let n = self.environment.mesh.make_ev(e0, e1, p)?;
+        self.push_half_edge(n)
+    }
+
+    pub(super) fn make_ev_one(&mut self) -> Result<(), Fault> {
+        let p = self.pop_vec3()?;
+        let e = self.pop_half_edge()?;
+        let n = self.environment.mesh.make_ev_one(e, p)?;
+        self.push_half_edge(n)
+    }
+
+    pub(super) fn make_ef(&mut self) -> Result<(), Fault> {
+        let e1 = self.pop_half_edge()?;
+        let e0 = self.pop_half_edge()?;
+        let n = self.environment.mesh.make_ef(e0, e1)?;
+        self.push_half_edge(n)
+    }
+
+    pub(super) fn kill(
+        &mut self,
+        kill: fn(&mut Mesh, HalfEdgeId) -> Result<(), EulerError>,
+    ) -> Result<(), Fault> {
+        let e = self.pop_half_edge()?;
+        Ok(kill(self.environment.mesh, e)?)
+    }
+
+    fn place_vertex(&mut self, v: VertexId, p: DVec3) -> Result<(), Fault> {
+        if !p.is_finite() {
+            return Err(EulerError::NotFinite.into());
+        }
+        self.environment.mesh.set_position(v, p);
+        Ok(())
+    }
+
+    fn shift_vertex(&mut self, v: VertexId, shift: DVec3) -> Result<(), Fault> {
+        let p = self.environment.mesh.position(v) + shift;
+        self.place_vertex(v, p)
+    }
+
+    /// `v p moveV`: to the place p.
+    pub(super) fn move_vertex(&mut self) -> Result<(), Fault> {
+        let p = self.pop_vec3()?;
+        let v = self.pop_place()?;
+        self.place_vertex(v, p)
+    }
+
+    /// `e d moveE`: both ends by d.
+    pub(super) fn move_edge(&mut self) -> Result<(), Fault> {
+        let shift = self.pop_vec3()?;
+        let h = self.pop_half_edge()?;
+        let [a, b] = [self.environment.mesh.source(h), self.environment.mesh.target(h)];
+        self.shift_vertex(a, shift)?;
+        self.shift_vertex(b, shift)
+    }
+
+    /// `f d moveF`: all vertices by d, each once.
+    pub(super) fn move_face(&mut self) -> Result<(), Fault> {
+        let shift = self.pop_vec3()?;
+        let f = self.pop_side()?;
+        let mut vertices: Vec<VertexId> = self.environment.mesh.face_vertices(f).collect();
+        self.environment.budget.spend_many(vertices.len() as u64)?;
+        vertices.sort_unstable();
+        vertices.dedup();
+        vertices.into_iter().try_for_each(|v| self.shift_vertex(v, shift))
+    }
+
+    /// `e s setsharpness`: of the edge of a half-edge, or of a vertex itself.
+    pub(super) fn set_sharpness(&mut self) -> Result<(), Fault> {
+        let sharpness = self.pop_number()?;
+        if !(0.0..=f64::from(f32::MAX)).contains(&sharpness) {
+            return Err(error(format!(
+                "a sharpness of {sharpness} is out of range; it is 0 (smooth) or more"
+            )));
+        }
+        match self.pop_node()? {
+            Node::HalfEdge(h) => self.environment.mesh.set_edge_sharpness(h, sharpness as f32),
+            Node::Vertex(v) => self.environment.mesh.set_vertex_sharpness(v, sharpness as f32),
+            other @ Node::Face(_) => return Err(self.mismatch(Kinds::PLACE, Value::Node(other))),
+        }
+        Ok(())
+    }
+}

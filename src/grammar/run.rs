@@ -1,0 +1,453 @@
+//! Running rules until none matches.
+
+use super::error::{Place, RunError};
+use super::plan::{Hop, Reach};
+use super::queue::Queue;
+use super::ruleset::{Rule, RuleSet};
+use super::search::{Search, View, bind};
+use crate::gml::{Budget, Environment, Failure, Fault, Machine, Program, Stop, Value, show_node};
+use crate::job::{Cancelled, Job};
+use crate::mesh::{Checkpoint, FaceId, Mesh, Node, Symbol};
+use std::collections::BTreeMap;
+use std::time::{Duration, Instant};
+
+/// What a run may cost.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub struct Limits {
+    /// Applications of rules.
+    pub applications: u64,
+    /// Steps of scripts and of the search for matches.
+    pub steps: u64,
+    /// Time; `None` for as long as it takes. A run that ends by time is not reproducible.
+    pub time: Option<Duration>,
+}
+
+impl Default for Limits {
+    /// 10 million applications, 10^9 steps, no limit of time.
+    fn default() -> Self {
+        Self { applications: 10_000_000, steps: 1_000_000_000, time: None }
+    }
+}
+
+/// How to run rules.
+#[derive(Clone, Default, Debug)]
+pub struct RunOptions<'a> {
+    /// Values of parameters that differ from their defaults.
+    pub parameters: BTreeMap<String, f64>,
+    /// What the run may cost.
+    pub limits: Limits,
+    /// Watches and cancels the run.
+    pub job: Option<&'a Job>,
+}
+
+/// What a run did.
+#[derive(Clone, PartialEq, Eq, Default, Debug)]
+pub struct Outcome {
+    /// Name of each rule and how often it was applied, in the order of the rules.
+    pub applications: Vec<(String, u64)>,
+    /// All applications together.
+    pub steps: u64,
+    /// Real faces whose edges or vertices changed and that still exist, ascending.
+    pub touched: Vec<FaceId>,
+}
+
+/// Runs `rules` on `mesh` until none matches, phase by phase. Within a phase the first rule in the order of the text
+/// that matches is applied, at its match with the smallest anchor id.
+///
+/// # Errors
+/// See [`RunError`]; the mesh is as it was then.
+pub fn run(rules: &RuleSet, mesh: &mut Mesh, options: &RunOptions<'_>) -> Result<Outcome, RunError> {
+    let parameters = parameters(rules, options)?;
+    let checkpoint = mesh.begin();
+    let result = Run::new(rules, mesh, &parameters, options).and_then(Run::finish);
+    match result {
+        Ok(outcome) => {
+            mesh.commit(checkpoint);
+            Ok(outcome)
+        }
+        Err(error) => {
+            mesh.rollback(checkpoint);
+            Err(error)
+        }
+    }
+}
+
+fn parameters(rules: &RuleSet, options: &RunOptions<'_>) -> Result<Vec<f64>, RunError> {
+    for name in options.parameters.keys() {
+        if !rules.parameters.iter().any(|parameter| parameter.name == *name) {
+            let known = rules.parameters.iter().map(|parameter| parameter.name.clone()).collect();
+            return Err(RunError::UnknownParameter { name: name.clone(), known });
+        }
+    }
+    rules
+        .parameters
+        .iter()
+        .map(|parameter| {
+            let value = options.parameters.get(&parameter.name).copied().unwrap_or(parameter.default);
+            if value.is_finite() && (parameter.low..=parameter.high).contains(&value) {
+                return Ok(value);
+            }
+            let (name, low, high) = (parameter.name.clone(), parameter.low, parameter.high);
+            Err(RunError::ParameterOutOfRange { name, value, low, high })
+        })
+        .collect()
+}
+
+struct Run<'a> {
+    rules: &'a RuleSet,
+    mesh: &'a mut Mesh,
+    parameters: &'a [f64],
+    symbols: Vec<Symbol>,
+    budget: Budget<'a>,
+    limits: Limits,
+    machine: Machine,
+    search: Search,
+    forbidden_search: Search,
+    /// The elements of the present match.
+    bound: Vec<u32>,
+    queues: Vec<Queue>,
+    /// Applications when each rule's queue was filled last.
+    seeded_at: Vec<u64>,
+    counts: Vec<u64>,
+    total: u64,
+    /// Faces that each application changed, with its rule.
+    touched: Vec<(FaceId, u32)>,
+    /// The rules of the present phase.
+    phase: std::ops::Range<usize>,
+    // Scratch lists of `after`.
+    changed: Vec<Node>,
+    faces: Vec<FaceId>,
+    walk: [Vec<u32>; 2],
+}
+
+impl<'a> Run<'a> {
+    fn new(
+        rules: &'a RuleSet,
+        mesh: &'a mut Mesh,
+        parameters: &'a [f64],
+        options: &RunOptions<'a>,
+    ) -> Result<Self, RunError> {
+        let symbols = rules.names.iter().map(|name| mesh.intern(name)).collect();
+        let deadline = options.limits.time.and_then(|time| Instant::now().checked_add(time));
+        let most_nodes = rules
+            .rules
+            .iter()
+            .flat_map(|rule| rule.forbidden.iter().map(|f| f.plans.len()).chain([rule.plans.len()]))
+            .max();
+        Ok(Self {
+            rules,
+            mesh,
+            parameters,
+            symbols,
+            budget: Budget::new(options.limits.steps, deadline, options.job),
+            limits: options.limits,
+            machine: Machine::new(&rules.strings),
+            search: Search::default(),
+            forbidden_search: Search::default(),
+            bound: vec![0; most_nodes.unwrap_or(0)],
+            queues: rules.rules.iter().map(|_| Queue::default()).collect(),
+            seeded_at: vec![0; rules.rules.len()],
+            counts: vec![0; rules.rules.len()],
+            total: 0,
+            touched: Vec::new(),
+            phase: 0..0,
+            changed: Vec::new(),
+            faces: Vec::new(),
+            walk: [Vec::new(), Vec::new()],
+        })
+    }
+
+    fn finish(mut self) -> Result<Outcome, RunError> {
+        let rules = self.rules;
+        for phase in &rules.phases {
+            for rule in phase.clone() {
+                self.seed(rule);
+            }
+            self.phase = phase.clone();
+            self.run_phase(phase.clone())?;
+        }
+        let mut faces: Vec<FaceId> = self.touched.iter().map(|(face, _)| *face).collect();
+        faces.sort_unstable();
+        faces.dedup();
+        faces.retain(|&face| self.mesh.has_face(face));
+        for &face in &faces {
+            if let Err(problem) = self.mesh.validate_control_face(face) {
+                return Err(self.broken(face, problem.to_string()));
+            }
+        }
+        let names = rules.rules.iter().map(|rule| rule.name.clone());
+        Ok(Outcome { applications: names.zip(self.counts).collect(), steps: self.total, touched: faces })
+    }
+
+    fn view(&self) -> View<'_> {
+        View { mesh: self.mesh, symbols: &self.symbols }
+    }
+
+    fn seed(&mut self, rule: usize) {
+        let anchor = &self.rules.rules[rule].anchor;
+        let ids = self.view().candidates(anchor);
+        let bound = self.view().bound(anchor.domain());
+        self.queues[rule].seed(ids, bound);
+        self.seeded_at[rule] = self.total;
+    }
+
+    /// Applies the rules of a phase until none matches.
+    fn run_phase(&mut self, phase: std::ops::Range<usize>) -> Result<(), RunError> {
+        loop {
+            let mut applied = false;
+            for rule in phase.clone() {
+                if self.apply_next(rule)? {
+                    applied = true;
+                    break;
+                }
+            }
+            if applied {
+                continue;
+            }
+            // Nothing near a change matches. What rules see beyond their patterns may have changed, too.
+            let stale = phase
+                .clone()
+                .filter(|&rule| self.rules.rules[rule].looks_further && self.seeded_at[rule] < self.total);
+            let stale: Vec<usize> = stale.collect();
+            if stale.is_empty() {
+                return Ok(());
+            }
+            for rule in stale {
+                self.seed(rule);
+            }
+        }
+    }
+
+    /// Applies a rule at the first of its anchors that has a match.
+    fn apply_next(&mut self, number: usize) -> Result<bool, RunError> {
+        let rule = &self.rules.rules[number];
+        while let Some(anchor) = self.queues[number].pop() {
+            match self.find(rule, anchor) {
+                Ok(false) => {}
+                Ok(true) => {
+                    self.apply(number, anchor)?;
+                    return Ok(true);
+                }
+                Err(Failed::Stopped(stop)) => return Err(self.stopped(stop, rule)),
+                Err(Failed::Script(condition, failure)) => {
+                    return Err(self.script_error(rule, &rule.conditions[condition], &failure));
+                }
+                Err(Failed::NotOneNumber(condition)) => {
+                    let program = &rule.conditions[condition];
+                    let failure = Failure {
+                        fault: Fault::Error("a condition must leave one number, and nothing else".to_owned()),
+                        op: program.last_op(),
+                    };
+                    return Err(self.script_error(rule, program, &failure));
+                }
+            }
+        }
+        Ok(false)
+    }
+
+    /// Looks for a match with its anchor at `id`; the match is in `bound`.
+    fn find(&mut self, rule: &Rule, id: u32) -> Result<bool, Failed> {
+        let view = View { mesh: self.mesh, symbols: &self.symbols };
+        let node = &rule.plans[rule.anchor_node];
+        if !view.mesh.has_node(Node::new(node.domain, id))
+            || !bind(view, node, id, &mut self.bound, rule.anchor_node)
+        {
+            return Ok(false);
+        }
+        let mut found =
+            self.search.start(view, &rule.plan, &rule.plans, 1, &mut self.bound, &mut self.budget)?;
+        while found {
+            if !self.is_forbidden(rule)? && self.conditions_hold(rule)? {
+                return Ok(true);
+            }
+            let view = View { mesh: self.mesh, symbols: &self.symbols };
+            found = self.search.resume(view, &rule.plan, &rule.plans, &mut self.bound, &mut self.budget)?;
+        }
+        Ok(false)
+    }
+
+    fn is_forbidden(&mut self, rule: &Rule) -> Result<bool, Failed> {
+        let view = View { mesh: self.mesh, symbols: &self.symbols };
+        for forbidden in &rule.forbidden {
+            let search = &mut self.forbidden_search;
+            if search.start(view, &forbidden.plan, &forbidden.plans, 0, &mut self.bound, &mut self.budget)? {
+                return Ok(true);
+            }
+        }
+        Ok(false)
+    }
+
+    fn conditions_hold(&mut self, rule: &Rule) -> Result<bool, Failed> {
+        for (i, condition) in rule.conditions.iter().enumerate() {
+            let mut environment = Environment {
+                mesh: self.mesh,
+                nodes: &self.bound,
+                parameters: self.parameters,
+                budget: &mut self.budget,
+            };
+            self.machine.run(condition, &mut environment).map_err(|failure| Failed::Script(i, failure))?;
+            match self.machine.stack() {
+                [Value::Number(truth)] => {
+                    if *truth == 0.0 {
+                        return Ok(false);
+                    }
+                }
+                _ => return Err(Failed::NotOneNumber(i)),
+            }
+        }
+        Ok(true)
+    }
+
+    /// Runs the action of a rule on the match in `bound`.
+    fn apply(&mut self, number: usize, anchor: u32) -> Result<(), RunError> {
+        let rule = &self.rules.rules[number];
+        if self.total >= self.limits.applications {
+            let limit = format!("more than {} applications", self.limits.applications);
+            return Err(self.runaway(limit, rule));
+        }
+        let before = self.mesh.log_position();
+        let mut environment = Environment {
+            mesh: self.mesh,
+            nodes: &self.bound,
+            parameters: self.parameters,
+            budget: &mut self.budget,
+        };
+        if let Err(failure) = self.machine.run(&rule.action, &mut environment) {
+            return Err(self.script_error(rule, &rule.action, &failure));
+        }
+        if !self.machine.stack().is_empty() {
+            let left: Vec<String> =
+                self.machine.stack().iter().map(|value| self.machine.show(value)).collect();
+            let message = format!("the action must leave the stack empty, but leaves {}", left.join(" "));
+            let failure = Failure { fault: Fault::Error(message), op: rule.action.last_op() };
+            return Err(self.script_error(rule, &rule.action, &failure));
+        }
+        self.counts[number] += 1;
+        self.total += 1;
+        // The same anchor may have another match.
+        self.queues[number].push(anchor);
+        self.after(number, before);
+        Ok(())
+    }
+
+    /// Notes the faces that the application changed and queues the anchors from which the changes can be seen.
+    fn after(&mut self, number: usize, before: Checkpoint) {
+        let mesh = &*self.mesh;
+        self.changed.clear();
+        self.changed.extend(mesh.touched_since(before).map(Node::HalfEdge));
+        self.changed.extend(mesh.annotated_since(before));
+        self.changed.sort_unstable();
+        self.changed.dedup();
+        self.changed.retain(|&node| mesh.has_node(node));
+        self.faces.clear();
+        for h in mesh.touched_since(before).filter(|&h| mesh.has_half_edge(h)) {
+            self.faces.push(mesh.face(h));
+        }
+        for v in mesh.moved_since(before).filter(|&v| mesh.has_vertex(v)) {
+            self.faces.extend(mesh.outgoing(v).map(|h| mesh.face(h)));
+        }
+        self.faces.sort_unstable();
+        self.faces.dedup();
+        let real = self.faces.iter().filter(|face| !face.is_boundary());
+        self.touched.extend(real.map(|&face| (face, number as u32)));
+
+        let view = View { mesh, symbols: &self.symbols };
+        for index in self.phase.clone() {
+            let rule = &self.rules.rules[index];
+            let queue = &mut self.queues[index];
+            let plan = &rule.plans[rule.anchor_node];
+            for &node in &self.changed {
+                for reach in rule.reach.iter().filter(|reach| reach.domain == node.domain()) {
+                    anchors(view, node, reach, &mut self.walk);
+                    for &id in &self.walk[0] {
+                        if view.may_anchor(Node::new(plan.domain, id), plan, &rule.anchor) {
+                            queue.push(id);
+                        }
+                    }
+                }
+            }
+        }
+    }
+
+    fn place(&self, rule: &Rule, bound: &[u32]) -> Place {
+        let nodes = rule.nodes.iter().zip(bound);
+        Place(nodes.map(|((name, domain), &id)| (name.clone(), Node::new(*domain, id))).collect())
+    }
+
+    fn script_error(&self, rule: &Rule, program: &Program, failure: &Failure) -> RunError {
+        let message = match &failure.fault {
+            Fault::Error(message) => message.clone(),
+            Fault::Thrown(value) => format!("the script threw {value} and nothing caught it"),
+            Fault::Stopped(stop) => return self.stopped(*stop, rule),
+        };
+        RunError::Script {
+            rule: rule.name.clone(),
+            place: self.place(rule, &self.bound),
+            diagnostic: Box::new(program.error(failure.op, message)),
+        }
+    }
+
+    fn stopped(&self, stop: Stop, rule: &Rule) -> RunError {
+        match stop {
+            Stop::Cancelled => RunError::Cancelled(Cancelled),
+            Stop::Steps => self.runaway(format!("more than {} steps", self.limits.steps), rule),
+            Stop::Time => {
+                let time = self.limits.time.unwrap_or_default();
+                self.runaway(format!("more than {} s", time.as_secs_f64()), rule)
+            }
+        }
+    }
+
+    fn runaway(&self, limit: String, rule: &Rule) -> RunError {
+        RunError::Runaway {
+            diagnostic: rule.diagnostic(&format!("{limit}, here in rule {}", rule.name)),
+            limit,
+            rule: rule.name.clone(),
+            place: self.place(rule, &self.bound),
+        }
+    }
+
+    fn broken(&self, face: FaceId, problem: String) -> RunError {
+        let last = self.touched.iter().rev().find(|(touched, _)| *touched == face);
+        let rule = &self.rules.rules[last.map_or(0, |(_, rule)| *rule as usize)];
+        let message = format!("rule {} was the last to change {}", rule.name, show_node(Node::Face(face)));
+        RunError::BrokenFace { rule: rule.name.clone(), problem, diagnostic: rule.diagnostic(&message) }
+    }
+}
+
+/// The anchors from which `node` can be seen by `reach`; they are in `lists[0]`.
+fn anchors(view: View<'_>, node: Node, reach: &Reach, lists: &mut [Vec<u32>; 2]) {
+    lists[0].clear();
+    let one = reach.path.iter().try_fold(node.id(), |id, hop| match hop {
+        Hop::One(via) => Some(view.follow(*via, id)),
+        Hop::Many(_) => None,
+    });
+    if let Some(id) = one {
+        lists[0].push(id);
+        return;
+    }
+    lists[0].push(node.id());
+    let mut domain = node.domain();
+    for (hop, next) in reach.path.iter().zip(&reach.domains) {
+        let [from, to] = lists;
+        to.clear();
+        for &id in from.iter() {
+            view.neighbours(Node::new(domain, id), *hop, *next, to);
+        }
+        domain = *next;
+        lists.swap(0, 1);
+    }
+}
+
+/// Why a search for a match ended early.
+enum Failed {
+    Stopped(Stop),
+    Script(usize, Failure),
+    NotOneNumber(usize),
+}
+
+impl From<Stop> for Failed {
+    fn from(stop: Stop) -> Self {
+        Self::Stopped(stop)
+    }
+}
