@@ -18,6 +18,9 @@ const MAX_PARTS: u32 = 4000;
 /// Refinements beside an extraordinary vertex; see the same limit of evaluation.
 const MAX_DEPTH: u32 = 128;
 
+/// Largest coordinate of a query: products of distances stay finite.
+const FARTHEST: f64 = 1e60;
+
 /// Which normals a closest point may have.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub struct Facing {
@@ -97,11 +100,12 @@ struct Search<'a> {
 
 impl LimitSurface {
     /// The point of the surface closest to `point`. `None` when nothing lies within the radius or is compatible, when
-    /// the surface is empty, and when a coordinate of `point` is not finite.
+    /// the surface is empty, and when a coordinate of `point` is NaN or beyond 1e60.
     ///
     /// At a point that is equally far from many points of the surface (the centre of a sphere) one of them.
     pub fn closest(&self, point: DVec3, options: &ClosestOptions) -> Option<Foot> {
-        if !point.is_finite() || options.radius.is_nan() {
+        let near_enough = point.abs().max_element() <= FARTHEST;
+        if !near_enough || options.radius.is_nan() {
             return None;
         }
         let facing = match options.facing {
