@@ -184,3 +184,113 @@ fn positions_equal_naive_refinement() {
         assert!(error < 1e-14, "{file}: {error:e}");
     }
 }
+
+/// Parameters well inside a patch, on the low side of every quarter and near each corner.
+const INSIDE: [(f64, f64); 8] = [
+    (0.3, 0.4),
+    (0.7, 0.2),
+    (0.81, 0.93),
+    (0.11, 0.77),
+    (0.02, 0.03),
+    (0.97, 0.01),
+    (0.985, 0.99),
+    (0.004, 0.9),
+];
+
+#[test]
+fn derivatives_equal_finite_differences() {
+    let Some(data) = common::shared_data() else { return };
+    for file in ["osd/catmark_cube.obj", "osd/catmark_nonquads.obj", "osd/catmark_edgecorner.obj"] {
+        let mesh = load(&data, file);
+        for face in mesh.faces() {
+            let arity = mesh.arity(face);
+            for corner in 0..if arity == 4 { 1 } else { arity } {
+                for (u, v) in INSIDE {
+                    let at = |u: f64, v: f64| evaluate(&mesh, face, corner, u, v).expect("a point");
+                    let here = at(u, v);
+                    let h = 1e-5;
+                    let (east, west, north, south) = (at(u + h, v), at(u - h, v), at(u, v + h), at(u, v - h));
+                    let second = here.second.expect("second derivatives");
+                    let slope = |a: DVec3, b: DVec3| (a - b) / (2.0 * h);
+                    let checks = [
+                        (here.du, slope(east.position, west.position), 1e-7),
+                        (here.dv, slope(north.position, south.position), 1e-7),
+                        (second.uu, slope(east.du, west.du), 1e-2),
+                        (second.uv, slope(north.du, south.du), 1e-2),
+                        (second.uv, slope(east.dv, west.dv), 1e-2),
+                        (second.vv, slope(north.dv, south.dv), 1e-2),
+                    ];
+                    for (i, (exact, difference, bound)) in checks.into_iter().enumerate() {
+                        let error = exact.distance(difference);
+                        assert!(error < bound, "{file} {} {corner} ({u}, {v}) {i}: {error:e}", face.0);
+                    }
+                    assert!((here.normal.length() - 1.0).abs() < 1e-12);
+                    assert!(here.normal.dot(here.du).abs() < 1e-12 && here.normal.dot(here.dv).abs() < 1e-12);
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn tangents_turn_continuously_into_those_of_the_vertex() {
+    let Some(data) = common::shared_data() else { return };
+    for file in ["osd/catmark_cube.obj", "osd/catmark_pole8.obj", "product/sc_jar_cage.obj"] {
+        let mesh = load(&data, file);
+        for face in mesh.faces() {
+            let vertex = evaluate(&mesh, face, 0, 0.0, 0.0).expect("a point");
+            let beside = evaluate(&mesh, face, 0, 1e-9, 1e-9).expect("a point");
+            assert!(vertex.normal.distance(beside.normal) < 1e-4, "{file} {}", face.0);
+            let along = evaluate(&mesh, face, 0, 1e-12, 0.0).expect("a point");
+            assert!(along.du.normalize().distance(vertex.du.normalize()) < 1e-4, "{file} {}", face.0);
+        }
+    }
+}
+
+#[test]
+fn deep_parameters_keep_their_precision() {
+    // Once the other eigenvectors are gone, the surface beside a vertex shrinks by the subdominant eigenvalue with every halving.
+    let Some(data) = common::shared_data() else { return };
+    let mesh = load(&data, "osd/catmark_cube.obj");
+    let c = (2.0 * std::f64::consts::PI / 3.0).cos();
+    let half = (std::f64::consts::PI / 3.0).cos();
+    let lambda = (5.0 + c + half * (2.0 * (9.0 + c)).sqrt()) / 16.0;
+    for depth in [60, 80, 100, 120] {
+        let at = |d: i32| evaluate(&mesh, FaceId(0), 0, 0.7f64 * 0.5f64.powi(d), 0.0).expect("a point").du;
+        let ratio = at(depth + 1).length() / at(depth).length();
+        assert!((ratio - 2.0 * lambda).abs() < 1e-10, "{depth}: {ratio}");
+    }
+}
+
+#[test]
+fn evaluation_commutes_with_affine_maps() {
+    let Some(data) = common::shared_data() else { return };
+    let matrix = glam::DMat3::from_cols_array(&[1.2, 0.3, -0.4, 0.1, 0.8, 0.5, -0.7, 0.2, 1.1]);
+    let map = |p: DVec3| matrix * p + DVec3::new(3.0, -2.0, 1.0);
+    for file in ["osd/catmark_nonquads.obj", "osd/catmark_edgecorner.obj", "osd/catmark_pole8.obj"] {
+        let mesh = load(&data, file);
+        let mut mapped = mesh.clone();
+        for v in mesh.vertices() {
+            mapped.set_position(v, map(mesh.position(v)));
+        }
+        for face in mesh.faces() {
+            for (u, v) in INSIDE {
+                let point = evaluate(&mesh, face, 0, u, v).expect("a point");
+                let image = evaluate(&mapped, face, 0, u, v).expect("a point");
+                assert!(image.position.distance(map(point.position)) < 1e-14 * mapped.size());
+                assert!(image.du.distance(matrix * point.du) < 1e-12 * mapped.size());
+            }
+        }
+    }
+}
+
+#[test]
+fn missing_patches_and_nan_give_nothing() {
+    let Some(data) = common::shared_data() else { return };
+    let mesh = load(&data, "osd/catmark_cube.obj");
+    assert!(evaluate(&mesh, FaceId(0), 1, 0.5, 0.5).is_none());
+    assert!(evaluate(&mesh, FaceId(6), 0, 0.5, 0.5).is_none());
+    assert!(evaluate(&mesh, FaceId(0), 0, f64::NAN, 0.5).is_none());
+    let clamped = evaluate(&mesh, FaceId(0), 0, 7.0, -1.0).expect("a point");
+    assert_eq!(Some(clamped), evaluate(&mesh, FaceId(0), 0, 1.0, 0.0));
+}

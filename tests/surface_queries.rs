@@ -286,25 +286,43 @@ fn height_fields_of_a_quadratic_are_that_quadratic() {
     }
 }
 
+/// A flat disc of k quads round the origin and 2k quads round these, at height z. The origin has valence k.
+fn disc(k: u32, z: f64) -> Mesh {
+    let ring = |radius: f64, j: u32| {
+        let angle = std::f64::consts::PI * f64::from(j) / f64::from(k);
+        DVec3::new(radius * angle.cos(), radius * angle.sin(), z)
+    };
+    let mut positions = vec![DVec3::new(0.0, 0.0, z)];
+    positions.extend((0..2 * k).map(|j| ring(1.0, j)));
+    positions.extend((0..2 * k).map(|j| ring(2.0, j)));
+    let at = |circle: u32, j: u32| 1 + 2 * k * circle + j % (2 * k);
+    let mut faces: Vec<[u32; 4]> =
+        (0..k).map(|j| [0, at(0, 2 * j), at(0, 2 * j + 1), at(0, 2 * j + 2)]).collect();
+    faces.extend((0..2 * k).map(|j| [at(0, j), at(1, j), at(1, j + 1), at(0, j + 1)]));
+    let faces: Vec<&[u32]> = faces.iter().map(|face| face.as_slice()).collect();
+    Mesh::from_polygons(&Polygons::new(positions, &faces)).expect("a disc")
+}
+
 #[test]
 fn plane_with_extraordinary_points_is_the_plane() {
-    let Some(data) = common::shared_data() else { return };
-    let mut mesh = load(&data, "osd/catmark_xord_interior.obj");
-    for v in mesh.vertices().collect::<Vec<_>>() {
-        let p = mesh.position(v);
-        mesh.set_position(v, DVec3::new(p.x, p.y, 0.25));
-    }
-    let surface = LimitSurface::new(&mesh);
-    let mut random = Random(6);
-    for _ in 0..300 {
-        let (face, corner, u, v) = random.place(&surface);
-        let on = surface.evaluate(face, corner, u, v).expect("a point");
-        let point = on.position + DVec3::Z * (random.next() - 0.5);
-        let foot = surface.closest(point, &ClosestOptions::default()).expect("a foot");
-        assert!((foot.distance - (point.z - 0.25).abs()).abs() < 1e-12);
-        assert!(foot.position.distance(on.position) < 1e-11, "{:e}", foot.position.distance(on.position));
-        let hits = surface.line_hits(point, DVec3::Z);
-        assert!(hits.iter().any(|hit| (hit.s - 0.25 + point.z).abs() < 1e-12), "{hits:?}");
+    for k in [3, 5, 7, 64] {
+        let surface = LimitSurface::new(&disc(k, 0.25));
+        let mut random = Random(6);
+        for _ in 0..300 {
+            let (face, corner, u, v) = random.place(&surface);
+            let on = surface.evaluate(face, corner, u, v).expect("a point");
+            assert!((on.position.z - 0.25).abs() < 1e-15);
+            let point = on.position + DVec3::Z * (random.next() - 0.5);
+            let foot = surface.closest(point, &ClosestOptions::default()).expect("a foot");
+            assert!((foot.distance - (point.z - 0.25).abs()).abs() < 1e-14);
+            let error = foot.position.distance(on.position);
+            assert!(error < 1e-12, "{k} {u} {v}: {error:e}");
+            let hits = surface.line_hits(point, DVec3::Z);
+            assert_eq!(hits.len(), 1, "{k} {u} {v}");
+            assert!(hits[0].position.distance(on.position) < 1e-12);
+        }
+        // Off the surface nothing is hit.
+        assert!(surface.line_hits(DVec3::new(2.1, 0.0, 0.0), DVec3::Z).is_empty());
     }
 }
 
@@ -331,8 +349,9 @@ fn senseless_queries_have_defined_results() {
     let nan = DVec3::new(f64::NAN, 0.0, 0.0);
     assert!(surface.closest(nan, &plain).is_none());
     assert!(surface.closest(DVec3::INFINITY, &plain).is_none());
+    assert!(surface.closest(DVec3::splat(1e200), &plain).is_none());
     assert!(surface.closest(DVec3::ZERO, &ClosestOptions { radius: 0.0, ..plain }).is_none());
-    assert!(surface.closest(DVec3::splat(1e200), &plain).is_some_and(|foot| foot.distance.is_finite()));
+    assert!(surface.closest(DVec3::splat(1e50), &plain).is_some_and(|foot| foot.distance > 1e50));
     assert!(surface.line_hits(DVec3::ZERO, DVec3::ZERO).is_empty());
     assert!(surface.line_hits(nan, DVec3::Z).is_empty());
     assert!(surface.line_hits(DVec3::ZERO, nan).is_empty());

@@ -3,7 +3,8 @@
 use super::convexity::Convexity;
 use super::freeze::{CornerEntry, Domain};
 use super::tree::{Content, Node};
-use super::{Bicubic, Jet, LimitSurface};
+use super::{Bicubic, LimitSurface};
+use crate::subdivision::patch_bicubic::Jet;
 use crate::mesh::FaceId;
 use crate::subdivision::patch_corner::Points;
 use glam::DVec3;
@@ -16,6 +17,9 @@ const MAX_HALVINGS: u32 = 8;
 const MAX_PARTS: u32 = 4000;
 /// Refinements beside an extraordinary vertex; see the same limit of evaluation.
 const MAX_DEPTH: u32 = 128;
+
+/// Largest coordinate of a query: products of distances stay finite.
+const FARTHEST: f64 = 1e60;
 
 /// Which normals a closest point may have.
 #[derive(Clone, Copy, PartialEq, Debug)]
@@ -76,7 +80,6 @@ struct Found {
     t: f64,
     position: DVec3,
     normal: DVec3,
-    aside: f64,
 }
 
 struct Search<'a> {
@@ -89,17 +92,20 @@ struct Search<'a> {
     /// A distance that some point of the surface is known to have or to undercut.
     bound: f64,
     found: Option<Found>,
+    /// How far the way to `found` is from perpendicular, as a length.
+    aside: f64,
     parts: u32,
     stack: Vec<Part>,
 }
 
 impl LimitSurface {
     /// The point of the surface closest to `point`. `None` when nothing lies within the radius or is compatible, when
-    /// the surface is empty, and when a coordinate of `point` is not finite.
+    /// the surface is empty, and when a coordinate of `point` is NaN or beyond 1e60.
     ///
     /// At a point that is equally far from many points of the surface (the centre of a sphere) one of them.
     pub fn closest(&self, point: DVec3, options: &ClosestOptions) -> Option<Foot> {
-        if !point.is_finite() || options.radius.is_nan() {
+        let near_enough = point.abs().max_element() <= FARTHEST;
+        if !near_enough || options.radius.is_nan() {
             return None;
         }
         let facing = match options.facing {
@@ -117,6 +123,7 @@ impl LimitSurface {
             best: options.radius,
             bound: f64::INFINITY,
             found: None,
+            aside: f64::INFINITY,
             parts: 0,
             stack: Vec::with_capacity(8),
         };
@@ -203,7 +210,9 @@ impl Search<'_> {
             self.parts += 1;
             if convexity.convex || part.halvings >= MAX_HALVINGS || self.parts > MAX_PARTS {
                 let (a, b, jet) = minimise(&part.bicubic, point);
-                self.offer(&domain, (part.s + part.size * a, part.t + part.size * b), &jet, point, origin);
+                let (s, t) = (part.s + part.size * a, part.t + part.size * b);
+                let normal = jet.du.cross(jet.dv);
+                self.offer(jet.position - point, Found { domain, s, t, position: jet.position + origin, normal });
             } else {
                 self.split(&part, point);
             }
@@ -236,41 +245,40 @@ impl Search<'_> {
         }
     }
 
-    /// Takes a minimum over a part of a piece if it is the best so far and allowed. `point` and the jet are relative
-    /// to `origin`.
-    fn offer(&mut self, domain: &Domain, (s, t): (f64, f64), jet: &Jet, point: DVec3, origin: DVec3) {
-        let way = jet.position - point;
+    /// Takes the minimum over a part of a piece if it is the best so far and allowed; `way` leads to it.
+    fn offer(&mut self, way: DVec3, found: Found) {
         let distance = way.length();
         if distance.is_nan() || distance >= self.radius || self.hopeless(distance) {
             return;
         }
-        let normal = jet.du.cross(jet.dv);
-        let unit = normal.normalize_or_zero();
+        let unit = found.normal.normalize_or_zero();
         let aside = (way - unit * way.dot(unit)).length();
         if let Some(facing) = self.facing {
             let compatible = unit.dot(facing.normal) > facing.min_cosine;
-            let foot = aside <= 1e3 * self.surface.tolerance || self.on_rim(domain, s, t);
+            let foot = aside <= 1e3 * self.surface.tolerance || self.on_rim(&found);
             if !compatible || unit == DVec3::ZERO || !foot {
                 return;
             }
         }
-        let better = match &self.found {
-            None => true,
-            Some(found) if (distance - self.best).abs() <= self.rounding() => aside < found.aside,
-            Some(_) => distance < self.best,
+        let better = if self.found.is_none() {
+            true
+        } else if (distance - self.best).abs() <= self.rounding() {
+            aside < self.aside
+        } else {
+            distance < self.best
         };
         if better {
             self.best = distance;
             self.bound = self.bound.min(distance);
-            let position = jet.position + origin;
-            self.found = Some(Found { domain: *domain, s, t, position, normal, aside });
+            self.aside = aside;
+            self.found = Some(found);
         }
     }
 
     /// True where the frozen surface ends.
-    fn on_rim(&self, domain: &Domain, s: f64, t: f64) -> bool {
-        let (u, v) = domain.parameters(s, t);
-        let rims = self.surface.places[domain.patch as usize].rims;
+    fn on_rim(&self, found: &Found) -> bool {
+        let (u, v) = found.domain.parameters(found.s, found.t);
+        let rims = self.surface.places[found.domain.patch as usize].rims;
         let sides = [v <= 0.0, u >= 1.0, v >= 1.0, u <= 0.0];
         sides.iter().enumerate().any(|(bit, &on)| on && rims & (1 << bit) != 0)
     }
@@ -283,13 +291,12 @@ impl Search<'_> {
         }) {
             return;
         }
-        let limit = entry.corner.vertex_limit();
-        let way = entry.corner.origin + limit.position - self.point;
-        let at_vertex = Jet { position: way, du: limit.du, dv: limit.dv, ..Jet::default() };
-        let unit = limit.normal.normalize_or_zero();
+        // The vertex itself; its distance is taken relative to the point, for the precision of small ones.
+        let way = entry.corner.origin - self.point;
+        let unit = entry.normal;
         let aside = (way - unit * way.dot(unit)).length();
-        // Offered relative to the point itself, for the precision of small distances.
-        self.offer(&entry.domain, (0.0, 0.0), &at_vertex, DVec3::ZERO, self.point);
+        let position = entry.corner.origin;
+        self.offer(way, Found { domain: entry.domain, s: 0.0, t: 0.0, position, normal: unit });
         // Where the vertex is the foot itself, what is left round it differs by rounding only.
         let is_foot = unit != DVec3::ZERO && aside <= self.surface.tolerance;
         let direction = way.normalize_or_zero();
@@ -345,10 +352,12 @@ fn minimise(bicubic: &Bicubic, point: DVec3) -> (f64, f64, Jet) {
         }
         // Shorten the step so that it ends on the border that it crosses first.
         let mut fraction = 1.0f64;
+        let mut border = None;
         for i in 0..2 {
             let end = if step[i] < 0.0 { -at[i] } else { 1.0 - at[i] };
-            if step[i].abs() > end.abs() {
-                fraction = fraction.min(end / step[i]);
+            if step[i].abs() * fraction > end.abs() {
+                fraction = end / step[i];
+                border = Some((i, at[i] + end));
             }
         }
         step = step.map(|x| x * fraction);
@@ -356,8 +365,11 @@ fn minimise(bicubic: &Bicubic, point: DVec3) -> (f64, f64, Jet) {
         // A short step of Newton's needs no check, which rounding would make fail.
         let trusted = exact && step[0].abs().max(step[1].abs()) < 1e-4;
         let mut moved = false;
-        for _ in 0..10 {
-            let next = [0, 1].map(|i: usize| (at[i] + step[i]).clamp(0.0, 1.0));
+        for halved in 0..10 {
+            let mut next = [0, 1].map(|i: usize| (at[i] + step[i]).clamp(0.0, 1.0));
+            if let (0, Some((i, end))) = (halved, border) {
+                next[i] = end;
+            }
             let next_jet = bicubic.jet(next[0], next[1]);
             if trusted || next_jet.position.distance_squared(point) <= before {
                 (at, jet, moved) = (next, next_jet, true);
@@ -367,7 +379,7 @@ fn minimise(bicubic: &Bicubic, point: DVec3) -> (f64, f64, Jet) {
         }
         // Newton's method squares the error: after a step of 1e-8 nothing is left to gain.
         let length = step[0].abs().max(step[1].abs());
-        if !moved || length < if exact && fraction == 1.0 { 1e-8 } else { 1e-15 } {
+        if !moved || border.is_none() && length < if exact { 1e-8 } else { 1e-15 } {
             break;
         }
     }

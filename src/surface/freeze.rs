@@ -3,7 +3,7 @@
 use super::tree::Tree;
 use super::{Bicubic, Corner, LimitSurface, Patch};
 use crate::mesh::{FaceId, Mesh};
-use crate::subdivision::patch::{Quarter, from_quarter};
+use crate::subdivision::patch::{Quarter, evaluate_corner, from_quarter};
 use crate::subdivision::patch_corner::{Points, VertexLimit};
 use glam::DVec3;
 
@@ -57,6 +57,8 @@ pub(super) struct CornerEntry {
     pub(super) domain: Domain,
     /// Tangents at the vertex in the parameters of the whole quarter.
     pub(super) limit: VertexLimit,
+    /// Unit normal at the vertex, zero where there is none.
+    pub(super) normal: DVec3,
 }
 
 #[derive(Clone, Debug)]
@@ -162,6 +164,7 @@ impl LimitSurface {
     fn add_corner(&mut self, mut corner: Corner, mut domain: Domain, scratch: &mut Points) -> QuarterEntry {
         let first_piece = self.pieces.len() as u32;
         let limit = corner.vertex_limit();
+        let normal = evaluate_corner(&corner, 0.0, 0.0).normal;
         for _ in 0..LEVELS {
             let sides = corner.refine(scratch);
             for (side, grid) in sides.iter().enumerate() {
@@ -170,7 +173,7 @@ impl LimitSurface {
             }
             domain = domain.inner();
         }
-        self.corners.push(CornerEntry { corner, domain, limit });
+        self.corners.push(CornerEntry { corner, domain, limit, normal });
         QuarterEntry::Corner { first_piece, corner: self.corners.len() as u32 - 1 }
     }
 

@@ -217,8 +217,7 @@ impl Search<'_> {
         let tolerance = self.surface.tolerance;
         let mut corner = entry.corner.clone();
         let mut domain = entry.domain;
-        let limit = corner.vertex_limit();
-        let position = self.frame * (corner.origin + limit.position - self.base);
+        let position = self.frame * (corner.origin - self.base);
         let hit = position.truncate().length() <= tolerance;
         let mut reported = false;
         let mut scratch = Points::new();
@@ -234,10 +233,7 @@ impl Search<'_> {
             }
             if hit && !reported {
                 reported = true;
-                let normal = match limit.normal.try_normalize() {
-                    Some(normal) => self.frame * normal,
-                    None => DVec3::ZERO,
-                };
+                let normal = self.frame * entry.normal;
                 self.take(&domain, Crossing { a: 0.0, b: 0.0, position, normal });
             }
             // The line goes through the vertex, and only there where the fan is seen along it without a fold.
@@ -253,7 +249,8 @@ impl Search<'_> {
         }
     }
 
-    /// True when all triangles of the fan round the vertex turn the same way, seen along the line.
+    /// True when all triangles of the fan round the vertex turn the same way, seen along the line, and none is seen
+    /// at a grazing angle: then neither does the surface fold.
     fn sees_plain_fan(&self, corner: &Corner) -> bool {
         let direction = self.frame.row(2);
         let mut signs = [false; 2];
@@ -261,9 +258,10 @@ impl Search<'_> {
         for (j, &diagonal) in corner.diagonals.iter().enumerate() {
             let (a, b) = (corner.spokes[j], corner.spokes[if j + 1 == count { 0 } else { j + 1 }]);
             for (p, q) in [(a, diagonal), (diagonal, b)] {
-                let area = (p - corner.vertex).cross(q - corner.vertex).dot(direction);
-                signs[usize::from(area > 0.0)] = true;
-                if area == 0.0 {
+                let normal = (p - corner.vertex).cross(q - corner.vertex);
+                let seen = normal.dot(direction);
+                signs[usize::from(seen > 0.0)] = true;
+                if seen.abs() <= 0.25 * normal.length() {
                     return false;
                 }
             }

@@ -120,11 +120,12 @@ impl LimitSurface {
                 }
                 let entry = &self.corners[corner as usize];
                 let mut found = evaluate_corner(&entry.corner, x, y);
-                found.jet = if found.smooth {
-                    found.jet.scaled(scale)
+                if found.smooth {
+                    found.jet = found.jet.scaled(scale);
                 } else {
-                    Jet { du: entry.limit.du, dv: entry.limit.dv, ..found.jet }
-                };
+                    found.jet = Jet { du: entry.limit.du, dv: entry.limit.dv, ..found.jet };
+                    found.normal = entry.normal;
+                }
                 found.jet = found.jet.from_quarter(quarter);
                 found.into()
             }
