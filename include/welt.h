@@ -138,6 +138,31 @@ extern "C" {
 #define WELT_NONE 4294967295
 
 /*
+ Faces at a boundary vertex are no part of the surface, unless all boundary edges there are infinitely sharp.
+ */
+#define WELT_BOUNDARY_NONE 0
+
+/*
+ The boundary is a cubic B-spline curve. The default.
+ */
+#define WELT_BOUNDARY_EDGE_ONLY 1
+
+/*
+ As WELT_BOUNDARY_EDGE_ONLY, but vertices of a single face stay where they are.
+ */
+#define WELT_BOUNDARY_EDGE_AND_CORNER 2
+
+/*
+ Sharpness falls by one from level to level. The default.
+ */
+#define WELT_CREASING_UNIFORM 0
+
+/*
+ Sharpness falls by one from level to level after it was averaged along the crease (Chaikin).
+ */
+#define WELT_CREASING_CHAIKIN 1
+
+/*
  Wavefront OBJ.
  */
 #define WELT_FORMAT_OBJ 0
@@ -447,6 +472,70 @@ int32_t welt_mesh_edges(const welt_mesh *mesh,
                         welt_error **error);
 
 /*
+ Sets the options under which a mesh is subdivided.
+
+ mesh: must not be NULL.
+ boundary: one of WELT_BOUNDARY_*.
+ creasing: one of WELT_CREASING_*.
+
+ Since: 0.1.
+ */
+WELT_API
+int32_t welt_mesh_set_subdivision(welt_mesh *mesh,
+                                  uint32_t boundary,
+                                  uint32_t creasing,
+                                  welt_error **error);
+
+/*
+ Sets the sharpness of edges.
+
+ mesh: must not be NULL.
+ vertices: the two vertices of each edge.
+ sharpness: of each edge, 0 (smooth) or more; 10 and more is infinitely sharp.
+ count: number of edges.
+
+ Fails with WELT_ERROR_MESH where two vertices are not joined by an edge; the mesh is as it was then. Since: 0.1.
+ */
+WELT_API
+int32_t welt_mesh_set_edge_sharpness(welt_mesh *mesh,
+                                     const uint32_t *vertices,
+                                     const float *sharpness,
+                                     size_t count,
+                                     welt_error **error);
+
+/*
+ Sets the sharpness of vertices.
+
+ mesh: must not be NULL.
+ vertices: the vertices.
+ sharpness: of each vertex, 0 (smooth) or more; 10 and more is infinitely sharp.
+ count: number of vertices.
+
+ After a failure the mesh is as it was before. Since: 0.1.
+ */
+WELT_API
+int32_t welt_mesh_set_vertex_sharpness(welt_mesh *mesh,
+                                       const uint32_t *vertices,
+                                       const float *sharpness,
+                                       size_t count,
+                                       welt_error **error);
+
+/*
+ Says which faces are holes: faces that are subdivided like others but are no part of the surface.
+
+ mesh: must not be NULL.
+ faces: the holes; all other faces are none.
+ count: number of holes.
+
+ After a failure the mesh is as it was before. Since: 0.1.
+ */
+WELT_API
+int32_t welt_mesh_set_holes(welt_mesh *mesh,
+                            const uint32_t *faces,
+                            size_t count,
+                            welt_error **error);
+
+/*
  Sets options to their defaults. options: must not be NULL. size: sizeof *options. Fails with WELT_ERROR_ARGUMENT where the
  size is none that the library knows, which is so when the program was compiled for a newer one. Since: 0.1.
  */
@@ -546,6 +635,34 @@ int32_t welt_mesh_limit_normals(const welt_mesh *mesh,
                                 double *normals,
                                 size_t capacity,
                                 welt_error **error);
+
+/*
+ Evaluates the limit surface at parameters of faces.
+
+ mesh: must not be NULL.
+ faces: the face of each point.
+ corners: the patch of each point; NULL for 0 everywhere. A quad has patch 0 only, another face one per corner.
+ parameters: u and v of each point, in [0, 1]; what lies outside is moved to the nearest inside. On a quad (0, 0) is its
+ first corner, u runs along the first edge and v against the last one. On patch c of another face (0, 0) is corner c,
+ (1, 0) the middle of the edge that leaves it, (0, 1) that of the edge that arrives, (1, 1) the face point.
+ count: number of points.
+ values: receives per point the position, the derivatives by u and by v, and those by u twice, by u and v, by v twice: 18
+ doubles. At an extraordinary vertex the first derivatives are tangents of conventional length, and the second ones,
+ which are not defined, are NaN. Where the face is no part of the limit surface (a hole, or by the boundary rule) all
+ are NaN.
+ capacity: room in values, at least 18 * count doubles.
+
+ Fails with WELT_ERROR_ARGUMENT where there is no such face or patch, or a parameter is NaN. Since: 0.1.
+ */
+WELT_API
+int32_t welt_mesh_evaluate(const welt_mesh *mesh,
+                           const uint32_t *faces,
+                           const uint32_t *corners,
+                           const double *parameters,
+                           size_t count,
+                           double *values,
+                           size_t capacity,
+                           welt_error **error);
 
 /*
  Refines a mesh.

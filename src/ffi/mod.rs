@@ -18,6 +18,7 @@ mod mesh;
 mod options;
 mod refinement;
 mod report;
+mod scheme;
 mod status;
 #[cfg(test)]
 mod tests;
@@ -30,5 +31,6 @@ pub use limit::*;
 pub use mesh::*;
 pub use refinement::*;
 pub use report::*;
+pub use scheme::*;
 pub use status::*;
 pub use version::*;

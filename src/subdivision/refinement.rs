@@ -1,7 +1,8 @@
 //! Uniform refinement: connectivity once, positions as often as they change.
 
+use super::exceptions::{Exceptions, LevelSharpness};
 use super::topology::{BoundaryEdge, Level};
-use crate::mesh::{FaceId, HalfEdgeId, Mesh, Polygons, VertexId};
+use crate::mesh::{Creasing, FaceId, HalfEdgeId, Mesh, Polygons, VertexId};
 use glam::DVec3;
 
 /// Refinement cannot be done.
@@ -56,6 +57,11 @@ pub struct Refinement {
     /// Valences of the vertices of level 1 (of which those of level 0 are the first); later ones have valence 4
     /// wherever a valence is asked for, which is not on the boundary.
     valences: Vec<u32>,
+    /// Per level but the last, the points of the next level that are not smooth.
+    exceptions: Vec<Exceptions>,
+    /// What is sharp on each level.
+    sharpness: Vec<LevelSharpness>,
+    creasing: Creasing,
     ids: ControlIds,
 }
 
@@ -79,11 +85,18 @@ impl Refinement {
         valences.extend(control.face_sizes());
         check_size(&control, depth)?;
         let mut levels = vec![control];
+        let creasing = mesh.subdivision().creasing;
+        let mut sharpness = vec![LevelSharpness::of(mesh, &ids)];
+        let mut exceptions = Vec::with_capacity(depth);
         for level in 1..=depth {
-            let child = levels[level - 1].child(level == depth);
+            let parent = &levels[level - 1];
+            let (found, next) = sharpness[level - 1].refined(parent, creasing);
+            exceptions.push(found);
+            sharpness.push(next);
+            let child = parent.child(level == depth);
             levels.push(child);
         }
-        Ok(Self { levels, valences, ids })
+        Ok(Self { levels, valences, exceptions, sharpness, creasing, ids })
     }
 
     /// Number of the last level.
@@ -144,6 +157,18 @@ impl Refinement {
             face_vertices: level.face_vertices().to_vec(),
             ..Polygons::default()
         }
+    }
+
+    pub(super) fn exceptions(&self, level: usize) -> &Exceptions {
+        &self.exceptions[level]
+    }
+
+    pub(super) fn sharpness(&self, level: usize) -> &LevelSharpness {
+        &self.sharpness[level]
+    }
+
+    pub(super) fn creasing(&self) -> Creasing {
+        self.creasing
     }
 
     pub(super) fn valences(&self) -> &[u32] {

@@ -22,7 +22,31 @@ Mesh make_mesh(Polygons const& polygons) {
                              polygons.vertices.size(), &polygons.positions.data()->x, polygons.positions.size(), 0,
                              &mesh, &error),
             error);
-    return Mesh(mesh);
+    Mesh owner(mesh);
+    Tags const& tags = polygons.tags;
+    constexpr std::uint32_t boundaries[] = {WELT_BOUNDARY_NONE, WELT_BOUNDARY_EDGE_AND_CORNER, WELT_BOUNDARY_EDGE_ONLY};
+    require(welt_mesh_set_subdivision(mesh, boundaries[tags.boundary],
+                                      tags.chaikin ? WELT_CREASING_CHAIKIN : WELT_CREASING_UNIFORM, &error),
+            error);
+    require(welt_mesh_set_edge_sharpness(mesh, tags.crease_vertices.data(), tags.crease_sharpness.data(),
+                                         tags.crease_sharpness.size(), &error),
+            error);
+    require(welt_mesh_set_vertex_sharpness(mesh, tags.corner_vertices.data(), tags.corner_sharpness.data(),
+                                           tags.corner_sharpness.size(), &error),
+            error);
+    require(welt_mesh_set_holes(mesh, tags.holes.data(), tags.holes.size(), &error), error);
+    return owner;
+}
+
+std::vector<Jet> evaluate(Mesh const& mesh, std::vector<std::uint32_t> const& faces,
+                          std::vector<std::uint32_t> const& corners, std::vector<double> const& parameters) {
+    static_assert(sizeof(Jet) == 18 * sizeof(double), "points are written as 18 doubles");
+    std::vector<Jet> jets(faces.size());
+    welt_error* error = nullptr;
+    require(welt_mesh_evaluate(mesh.get(), faces.data(), corners.data(), parameters.data(), faces.size(),
+                               &jets.data()->position.x, 18 * jets.size(), &error),
+            error);
+    return jets;
 }
 
 std::vector<Level> refine(Mesh const& mesh, unsigned depth) {

@@ -28,8 +28,16 @@ struct Level {
     std::vector<std::uint32_t> parent_faces, parent_corners;
 };
 
+// A point of the limit surface and its derivatives.
+struct Jet {
+    Vector position, du, dv, duu, duv, dvv;
+};
+
 // Throws Refused for WELT_ERROR_MESH, std::runtime_error for every other failure, as do the functions below.
 Mesh make_mesh(Polygons const& polygons);
 std::vector<Level> refine(Mesh const& mesh, unsigned depth);
+// Parameters are two per point.
+std::vector<Jet> evaluate(Mesh const& mesh, std::vector<std::uint32_t> const& faces,
+                          std::vector<std::uint32_t> const& corners, std::vector<double> const& parameters);
 std::vector<Vector> limit_positions(Mesh const& mesh);
 std::vector<Vector> limit_normals(Mesh const& mesh);
