@@ -3,6 +3,8 @@
 //
 // Beside an extraordinary vertex Bfr refines to a level that is asked for (10 here) and puts an approximation into the
 // last square; parameters there are left out. Holes and faces that the boundary rule leaves out have no surface in both.
+// Faces with a semi-sharp edge at an interior vertex of two faces are left out: Bfr of OpenSubdiv 3.5 numbers the vertices
+// of its neighbourhood wrongly there and reads beyond an array.
 
 #include "check.hpp"
 #include "models.hpp"
@@ -29,6 +31,16 @@ struct Largest {
 bool in_last_square(double u, double v, int used) {
     double const size = std::ldexp(1.0, used - levels) * 1.0001;
     return std::min(u, 1 - u) <= size && std::min(v, 1 - v) <= size;
+}
+
+bool breaks_bfr(Far::TopologyLevel const& level, int face) {
+    for (int vertex : level.GetFaceVertices(face)) {
+        if (level.IsVertexBoundary(vertex) || level.GetVertexFaces(vertex).size() != 2) continue;
+        for (int edge : level.GetVertexEdges(vertex)) {
+            if (Sdc::Crease::IsSemiSharp(level.GetEdgeSharpness(edge))) return true;
+        }
+    }
+    return false;
 }
 
 void compare(std::string const& name, Polygons const& polygons, Mesh const& mesh) {
@@ -58,6 +70,7 @@ void compare(std::string const& name, Polygons const& polygons, Mesh const& mesh
         }
         auto const jets = evaluate(mesh, faces, corners, parameters);
         std::string const where = name + " face " + std::to_string(face);
+        if (breaks_bfr(refiner->GetLevel(0), face)) continue;
         if (!factory.InitVertexSurface(face, &surface)) {
             for (auto const& jet : jets) check::that(std::isnan(jet.position.x), where + " has a surface");
             ++nowhere;
