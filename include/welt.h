@@ -113,6 +113,11 @@ extern "C" {
 #define WELT_ERROR_SYNTAX -9
 
 /*
+ A rule failed, or the rules do not come to an end; the message names rule and place. The mesh is as it was before.
+ */
+#define WELT_ERROR_RULE -10
+
+/*
  The place is no element of a mesh: the input as a whole, or a place in a text.
  */
 #define WELT_PLACE_WHOLE 0

@@ -81,7 +81,8 @@ fn naive_step(points: &[DVec3], faces: &[Fine], first: bool) -> (Vec<DVec3>, Vec
     for (f, face) in faces.iter().enumerate() {
         let k = face.vertices.len();
         for i in 0..k {
-            let (v, next, prev) = (face.vertices[i], face.vertices[(i + 1) % k], face.vertices[(i + k - 1) % k]);
+            let (v, next, prev) =
+                (face.vertices[i], face.vertices[(i + 1) % k], face.vertices[(i + k - 1) % k]);
             let vertices = vec![
                 v,
                 edge_vertex[&(v.min(next), v.max(next))],

@@ -263,10 +263,8 @@ fn sheet(n: u32, height: impl Fn(f64, f64) -> f64) -> Mesh {
 fn height_fields_of_a_quadratic_are_that_quadratic() {
     // A uniform cubic B-spline whose control heights are x^2 has the heights x^2 + 1/3.
     let mesh = sheet(10, |x, y| 0.1 * (x * x - 2.0 * y * y + x * y));
-    let inner: Vec<FaceId> = mesh
-        .faces()
-        .filter(|&f| mesh.face_vertices(f).all(|v| !mesh.is_boundary_vertex(v)))
-        .collect();
+    let inner: Vec<FaceId> =
+        mesh.faces().filter(|&f| mesh.face_vertices(f).all(|v| !mesh.is_boundary_vertex(v))).collect();
     let surface = LimitSurface::around(&mesh, &inner);
     assert_eq!(surface.faces().len(), 64);
     let height = |x: f64, y: f64| 0.1 * (x * x - 2.0 * y * y + x * y - 1.0 / 3.0);
@@ -279,10 +277,13 @@ fn height_fields_of_a_quadratic_are_that_quadratic() {
         assert!((hits[0].s - (5.0 - height(x, y))).abs() < 1e-12);
         let normal = DVec3::new(-0.1 * (2.0 * x + y), -0.1 * (x - 4.0 * y), 1.0).normalize();
         assert!(hits[0].normal.distance(normal) < 1e-12);
-        let foot = surface
-            .closest(hits[0].position + 0.1 * normal, &ClosestOptions::default())
-            .expect("a foot");
-        assert!(foot.position.distance(hits[0].position) < 1e-12, "{}", foot.position.distance(hits[0].position));
+        let foot =
+            surface.closest(hits[0].position + 0.1 * normal, &ClosestOptions::default()).expect("a foot");
+        assert!(
+            foot.position.distance(hits[0].position) < 1e-12,
+            "{}",
+            foot.position.distance(hits[0].position)
+        );
     }
 }
 

@@ -111,7 +111,6 @@ impl Bicubic {
     /// The smallest axis-parallel box round the control points, which holds the patch.
     pub(crate) fn bounds(&self) -> (DVec3, DVec3) {
         let flat = self.points.as_flattened();
-        flat.iter()
-            .fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), &p| (low.min(p), high.max(p)))
+        flat.iter().fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), &p| (low.min(p), high.max(p)))
     }
 }

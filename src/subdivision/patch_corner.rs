@@ -147,8 +147,7 @@ impl Corner {
         fine[1][0] = self.spoke(2).unwrap_or(self.vertex);
         fine[0][1] = self.spoke(-1).unwrap_or(self.vertex);
         extend(&mut fine, self.boundary_u(), self.boundary_v());
-        self.outer =
-            [fine[0][3], fine[1][3], fine[2][3], fine[3][3], fine[3][2], fine[3][1], fine[3][0]];
+        self.outer = [fine[0][3], fine[1][3], fine[2][3], fine[3][3], fine[3][2], fine[3][1], fine[3][0]];
         let window = |i0: usize, j0: usize| -> Grid {
             std::array::from_fn(|j| std::array::from_fn(|i| fine[j + j0][i + i0]))
         };

@@ -200,7 +200,8 @@ impl Ring {
         for (fan, [v, next, prev]) in self.fans.iter().zip(CORNERS) {
             let behind = |a: usize, b: usize| 2 * a - b;
             grid[v.1][v.0] = fan.vertex;
-            let (bu, bv) = ((behind(v.0, next.0), behind(v.1, next.1)), (behind(v.0, prev.0), behind(v.1, prev.1)));
+            let (bu, bv) =
+                ((behind(v.0, next.0), behind(v.1, next.1)), (behind(v.0, prev.0), behind(v.1, prev.1)));
             let sum = |a: (usize, usize), b: (usize, usize)| (a.0 + b.0 - v.0, a.1 + b.1 - v.1);
             let entries = [
                 (bu, fan.spoke(2)),

@@ -4,8 +4,8 @@ use super::convexity::Convexity;
 use super::freeze::{CornerEntry, Domain};
 use super::tree::{Content, Node};
 use super::{Bicubic, LimitSurface};
-use crate::subdivision::patch_bicubic::Jet;
 use crate::mesh::FaceId;
+use crate::subdivision::patch_bicubic::Jet;
 use crate::subdivision::patch_corner::Points;
 use glam::DVec3;
 use smallvec::SmallVec;
@@ -212,7 +212,10 @@ impl Search<'_> {
                 let (a, b, jet) = minimise(&part.bicubic, point);
                 let (s, t) = (part.s + part.size * a, part.t + part.size * b);
                 let normal = jet.du.cross(jet.dv);
-                self.offer(jet.position - point, Found { domain, s, t, position: jet.position + origin, normal });
+                self.offer(
+                    jet.position - point,
+                    Found { domain, s, t, position: jet.position + origin, normal },
+                );
             } else {
                 self.split(&part, point);
             }
@@ -337,7 +340,8 @@ fn minimise(bicubic: &Bicubic, point: DVec3) -> (f64, f64, Jet) {
         let way = jet.position - point;
         let gradient = [way.dot(jet.du), way.dot(jet.dv)];
         // A parameter at its end stays there while the distance falls outwards.
-        let free = [0, 1].map(|i| !(at[i] <= 0.0 && gradient[i] >= 0.0 || at[i] >= 1.0 && gradient[i] <= 0.0));
+        let free =
+            [0, 1].map(|i| !(at[i] <= 0.0 && gradient[i] >= 0.0 || at[i] >= 1.0 && gradient[i] <= 0.0));
         let Some((mut step, mut exact)) = newton_step(&jet, way, gradient, free) else {
             break;
         };

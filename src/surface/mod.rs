@@ -14,7 +14,7 @@ mod line_piece;
 mod tree;
 
 pub use closest::{ClosestOptions, Facing, Foot};
-pub use deviation::{Deviation, DeviationSample, deviation, deviation_both_ways, deviation_samples};
+pub use deviation::{Comparison, Deviation, DeviationSample, compare, deviation, deviation_samples};
 pub use line::Hit;
 
 use crate::mesh::{FaceId, Mesh};
@@ -22,7 +22,7 @@ use crate::subdivision::SurfacePoint;
 use crate::subdivision::patch::{Patch, evaluate_corner, to_quarter};
 use crate::subdivision::patch_bicubic::{Bicubic, Jet};
 use crate::subdivision::patch_corner::Corner;
-use freeze::{CornerEntry, LEVELS, PatchEntry, Piece, PatchPlace, QuarterEntry};
+use freeze::{CornerEntry, LEVELS, PatchEntry, PatchPlace, Piece, QuarterEntry};
 use glam::DVec3;
 use tree::Tree;
 
@@ -136,10 +136,10 @@ impl LimitSurface {
     /// has an angle below 90 degrees with `normal` counts; where there is none, the closest point. `None` when the
     /// surface is empty or a coordinate is not finite.
     pub fn signed_distance(&self, point: DVec3, normal: DVec3) -> Option<f64> {
-        let facing = ClosestOptions { facing: Some(Facing { normal, min_cosine: 0.0 }), ..Default::default() };
-        let foot = self
-            .closest(point, &facing)
-            .or_else(|| self.closest(point, &ClosestOptions::default()))?;
+        let facing =
+            ClosestOptions { facing: Some(Facing { normal, min_cosine: 0.0 }), ..Default::default() };
+        let foot =
+            self.closest(point, &facing).or_else(|| self.closest(point, &ClosestOptions::default()))?;
         Some(foot.distance.copysign((point - foot.position).dot(foot.normal)))
     }
 }

@@ -1,0 +1,129 @@
+//! `welt_surface`.
+
+use super::arguments::{self, Output};
+use super::boundary::boundary;
+use super::error::WeltError;
+use super::failure::Failure;
+use super::feature::method;
+use super::job::WeltJob;
+use super::mesh::{WeltMesh, mesh_of};
+use super::report::WeltReport;
+use crate::job::Job;
+use crate::mesh::{FaceId, VertexId};
+use crate::optimise::{self, Target};
+
+/// A limit surface, frozen: it stays as it is when its mesh changes. Never changes.
+pub struct WeltSurface {
+    target: Target,
+}
+
+/// Freezes the limit surface of a mesh.
+///
+/// mesh: must not be NULL.
+/// faces: the faces whose surface is frozen; NULL for all. Cost follows their number.
+/// count: number of faces; 0 where faces is NULL.
+/// surface: receives the handle; free it with welt_surface_free.
+///
+/// Since: 0.1.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn welt_surface_create(
+    mesh: *const WeltMesh,
+    faces: *const u32,
+    count: usize,
+    surface: *mut *mut WeltSurface,
+    error: *mut *mut WeltError,
+) -> i32 {
+    let body = || {
+        // SAFETY: the header asks for a living mesh, an array of this count and a place for the handle.
+        let (mesh, output) = unsafe { (mesh_of(mesh)?, Output::new(surface, "surface")?) };
+        let faces: Vec<FaceId> = if faces.is_null() {
+            mesh.faces().collect()
+        } else {
+            // SAFETY: as above.
+            unsafe { arguments::array(faces, count, "faces") }?.iter().map(|&f| FaceId(f)).collect()
+        };
+        if let Some(missing) = faces.iter().find(|f| f.is_boundary() || !mesh.has_face(**f)) {
+            return Err(Failure::argument(format!("face {} does not exist", missing.0)));
+        }
+        output.handle(WeltSurface { target: Target::freeze(mesh, &faces) });
+        Ok(())
+    };
+    // SAFETY: the header asks for NULL or a place for an error.
+    unsafe { boundary(error, body) }
+}
+
+/// Frees a surface. NULL is allowed. Since: 0.1.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn welt_surface_free(surface: *mut WeltSurface) {
+    // SAFETY: the header asks for NULL or a surface that was not freed.
+    unsafe { arguments::free(surface) };
+}
+
+/// Moves vertices so that their limit points lie on a frozen surface.
+///
+/// mesh: is changed.
+/// vertices: the vertices that may move; NULL for all.
+/// count: number of vertices; 0 where vertices is NULL.
+/// surface: must not be NULL.
+/// fit: one of WELT_FIT_*.
+/// job: may be NULL.
+/// report: may be NULL; else receives method, steps, stop reason, residual and the vertices that found no surface. Free it
+/// with welt_report_free.
+///
+/// Fails with WELT_ERROR_ARGUMENT and WELT_ERROR_CANCELLED; the mesh is as it was before then. Since: 0.1.
+#[unsafe(no_mangle)]
+#[allow(clippy::too_many_arguments)]
+pub unsafe extern "C" fn welt_mesh_fit(
+    mesh: *mut WeltMesh,
+    vertices: *const u32,
+    count: usize,
+    surface: *const WeltSurface,
+    fit: u32,
+    job: *const WeltJob,
+    report: *mut *mut WeltReport,
+    error: *mut *mut WeltError,
+) -> i32 {
+    let body = || {
+        // SAFETY: the header asks for these handles, a place for a report or NULL, and an array of this count.
+        let (mesh, surface, job, report, named) = unsafe {
+            (
+                arguments::handle_mut(mesh, "mesh")?,
+                arguments::handle(surface, "surface")?,
+                arguments::optional(job, "job")?,
+                Output::optional(report, "report")?,
+                if vertices.is_null() { None } else { Some(arguments::array(vertices, count, "vertices")?) },
+            )
+        };
+        let method = method(fit)?;
+        let mut active: Vec<VertexId> = match named {
+            Some(vertices) => vertices.iter().map(|&v| VertexId(v)).collect(),
+            None => mesh.read()?.vertices().collect(),
+        };
+        active.sort_unstable();
+        active.dedup();
+        if let Some(missing) = active.iter().find(|&&v| !mesh.read().is_ok_and(|mesh| mesh.has_vertex(v))) {
+            return Err(Failure::argument(format!("vertex {} does not exist", missing.0)));
+        }
+        let idle = Job::new();
+        let job = job.map_or(&idle, |job| &job.job);
+        let done = mesh.change(|mesh| {
+            let checkpoint = mesh.begin();
+            match optimise::fit(mesh, &active, &surface.target, method, job) {
+                Ok(done) => {
+                    mesh.commit(checkpoint);
+                    Ok(done)
+                }
+                Err(cancelled) => {
+                    mesh.rollback(checkpoint);
+                    Err(cancelled.into())
+                }
+            }
+        })?;
+        if let Some(report) = report {
+            report.handle(WeltReport::new(&done)?);
+        }
+        Ok(())
+    };
+    // SAFETY: the header asks for NULL or a place for an error.
+    unsafe { boundary(error, body) }
+}
