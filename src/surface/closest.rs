@@ -2,19 +2,20 @@
 
 use super::convexity::Convexity;
 use super::freeze::{CornerEntry, Domain};
-use super::tree::{Content, Node};
+use super::tree::Content;
 use super::{Bicubic, LimitSurface};
 use crate::mesh::FaceId;
 use crate::subdivision::patch_bicubic::Jet;
 use crate::subdivision::patch_corner::Points;
 use glam::DVec3;
-use smallvec::SmallVec;
+use std::cmp::{Ordering, Reverse};
+use std::collections::BinaryHeap;
 
 /// How often a piece is halved at most before Newton's method is trusted without proof.
 const MAX_HALVINGS: u32 = 8;
 /// Parts of pieces looked at before halving ends: bounds the time at centres of curvature, where everything is
 /// equally close.
-const MAX_PARTS: u32 = 4000;
+const MAX_PARTS: u32 = 2000;
 /// Refinements beside an extraordinary vertex; see the same limit of evaluation.
 const MAX_DEPTH: u32 = 128;
 
@@ -147,6 +148,24 @@ impl LimitSurface {
     }
 }
 
+/// A distance as a key of the queue.
+#[derive(Clone, Copy, PartialEq)]
+struct Nearness(f64);
+
+impl Eq for Nearness {}
+
+impl Ord for Nearness {
+    fn cmp(&self, other: &Self) -> Ordering {
+        self.0.total_cmp(&other.0)
+    }
+}
+
+impl PartialOrd for Nearness {
+    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
 fn box_distance(low: DVec3, high: DVec3, point: DVec3) -> f64 {
     (low - point).max(point - high).max(DVec3::ZERO).length()
 }
@@ -163,23 +182,24 @@ impl Search<'_> {
         at_least > self.best.min(self.bound) + self.rounding()
     }
 
+    /// Visits the pieces, the nearest boxes first.
     fn run(&mut self) {
         let surface = self.surface;
-        let distance = |node: &Node, point: DVec3| box_distance(node.low, node.high, point);
-        let mut open: SmallVec<[(f64, u32); 64]> = SmallVec::new();
+        let entry = |index: u32, point: DVec3| {
+            let node = surface.tree.node(index);
+            Reverse((Nearness(box_distance(node.low, node.high, point)), index))
+        };
+        let mut open = BinaryHeap::with_capacity(64);
         if surface.tree.bounds().is_some() {
-            open.push((distance(surface.tree.node(0), self.point), 0));
+            open.push(entry(0, self.point));
         }
-        while let Some((at_least, index)) = open.pop() {
+        while let Some(Reverse((Nearness(at_least), index))) = open.pop() {
             if self.hopeless(at_least) {
-                continue;
+                break;
             }
             match surface.tree.content(index) {
                 Content::Children(children) => {
-                    let [a, b] = children.map(|c| (distance(surface.tree.node(c), self.point), c));
-                    let (near, far) = if b.0 < a.0 { (b, a) } else { (a, b) };
-                    open.push(far);
-                    open.push(near);
+                    open.extend(children.map(|child| entry(child, self.point)));
                 }
                 Content::Leaf(items) => {
                     for &item in items {
@@ -196,6 +216,8 @@ impl Search<'_> {
     /// Looks at a patch whose points are relative to `origin`.
     fn visit(&mut self, bicubic: Bicubic, origin: DVec3, domain: Domain) {
         let point = self.point - origin;
+        // Minima on the border of a part do not count then, but those on the border of the surface do.
+        let feet_only = self.facing.is_some() && self.surface.places[domain.patch as usize].rims == 0;
         self.stack.clear();
         self.stack.push(Part { bicubic, s: 0.0, t: 0.0, size: 1.0, halvings: 0 });
         while let Some(part) = self.stack.pop() {
@@ -204,7 +226,7 @@ impl Search<'_> {
                 continue;
             }
             let convexity = Convexity::new(&part.bicubic, point);
-            if self.hopeless(convexity.at_least) {
+            if self.hopeless(convexity.at_least) || feet_only && !convexity.may_have_foot {
                 continue;
             }
             self.parts += 1;
@@ -316,8 +338,13 @@ impl Search<'_> {
                 radius = radius.max(p.length_squared());
             }
             let slack = if is_foot { 2.0 * self.rounding() } else { 0.0 };
+            // The surface curves less towards the point than a sphere round it, with room to spare; as the rings
+            // beside a vertex are similar from level to level, nothing closer than the vertex is left.
+            let curves_little =
+                || corner.control_points().all(|p| 2.0 * p.dot(way) >= -0.25 * p.length_squared());
             if self.hopeless(box_distance(low, high, self.point))
                 || self.hopeless(ahead + slack)
+                || is_foot && curves_little()
                 || radius.sqrt() <= 0.05 * self.surface.tolerance
             {
                 return;

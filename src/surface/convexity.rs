@@ -12,6 +12,8 @@ pub(super) struct Convexity {
     pub(super) at_least: f64,
     /// Half the squared distance has a positive definite Hessian all over the patch.
     pub(super) convex: bool,
+    /// False when the distance surely rises or falls all over the patch in one of the parameters.
+    pub(super) may_have_foot: bool,
 }
 
 /// Mean of vectors, and the largest distance of any of them from it.
@@ -51,6 +53,10 @@ impl Convexity {
         let (b, b_spread) = spread(&dv);
         let (a_length, b_length) = (a.length(), b.length());
         let second = 2.0 / 3.0;
+        let level = |slopes: (f64, f64, f64)| {
+            slopes.0 <= radius * slopes.2 && slopes.1 >= -radius * slopes.2
+        };
+        let may_have_foot = level(products(&du, w)) && level(products(&dv, w));
         let diagonal = |length: f64, spread: f64, bend: (f64, f64, f64)| {
             let slope = (length - spread).max(0.0);
             slope * slope + second * (bend.0 - radius * bend.2)
@@ -61,6 +67,6 @@ impl Convexity {
         let slack = a_length * b_spread + b_length * a_spread + a_spread * b_spread + radius * twist.2;
         let ab = a.dot(b);
         let uv = (ab + twist.0).abs().max((ab + twist.1).abs()) + slack;
-        Self { at_least, convex: uu > 0.0 && vv > 0.0 && uu * vv > uv * uv }
+        Self { at_least, convex: uu > 0.0 && vv > 0.0 && uu * vv > uv * uv, may_have_foot }
     }
 }
