@@ -1,6 +1,6 @@
 //! The closest point: branch and bound over the pieces, Newton's method where it is certain.
 
-use super::convexity::Convexity;
+use super::convexity::View;
 use super::freeze::{CornerEntry, Domain};
 use super::tree::Content;
 use super::{Bicubic, LimitSurface};
@@ -166,6 +166,15 @@ impl PartialOrd for Nearness {
     }
 }
 
+/// What the queue holds: items come before nodes that may be as near.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+enum Goal {
+    /// A piece or, numbered after the pieces, an extraordinary corner.
+    Item(u32),
+    /// A node of the tree.
+    Node(u32),
+}
+
 fn box_distance(low: DVec3, high: DVec3, point: DVec3) -> f64 {
     (low - point).max(point - high).max(DVec3::ZERO).length()
 }
@@ -182,33 +191,40 @@ impl Search<'_> {
         at_least > self.best.min(self.bound) + self.rounding()
     }
 
-    /// Visits the pieces, the nearest boxes first.
+    /// Visits the pieces, those first that may be nearest.
     fn run(&mut self) {
         let surface = self.surface;
-        let entry = |index: u32, point: DVec3| {
+        let node_entry = |index: u32, point: DVec3| {
             let node = surface.tree.node(index);
-            Reverse((Nearness(box_distance(node.low, node.high, point)), index))
+            Reverse((Nearness(box_distance(node.low, node.high, point)), Goal::Node(index)))
         };
         let mut open = BinaryHeap::with_capacity(64);
         if surface.tree.bounds().is_some() {
-            open.push(entry(0, self.point));
+            open.push(node_entry(0, self.point));
         }
-        while let Some(Reverse((Nearness(at_least), index))) = open.pop() {
+        while let Some(Reverse((Nearness(at_least), goal))) = open.pop() {
             if self.hopeless(at_least) {
                 break;
             }
-            match surface.tree.content(index) {
-                Content::Children(children) => {
-                    open.extend(children.map(|child| entry(child, self.point)));
-                }
-                Content::Leaf(items) => {
-                    for &item in items {
-                        match surface.pieces.get(item as usize) {
-                            Some(piece) => self.visit(piece.bicubic, DVec3::ZERO, piece.domain),
-                            None => self.visit_corner(&surface.corners[item as usize - surface.pieces.len()]),
-                        }
+            match goal {
+                Goal::Node(index) => match surface.tree.content(index) {
+                    Content::Children(children) => {
+                        open.extend(children.map(|child| node_entry(child, self.point)));
                     }
-                }
+                    Content::Leaf(items) => {
+                        open.extend(items.iter().map(|&item| {
+                            let nearness = match surface.pieces.get(item as usize) {
+                                Some(piece) => View::new(&piece.bicubic, self.point).at_least,
+                                None => at_least,
+                            };
+                            Reverse((Nearness(nearness), Goal::Item(item)))
+                        }));
+                    }
+                },
+                Goal::Item(item) => match surface.pieces.get(item as usize) {
+                    Some(piece) => self.visit(piece.bicubic, DVec3::ZERO, piece.domain),
+                    None => self.visit_corner(&surface.corners[item as usize - surface.pieces.len()]),
+                },
             }
         }
     }
@@ -218,6 +234,7 @@ impl Search<'_> {
         let point = self.point - origin;
         // Minima on the border of a part do not count then, but those on the border of the surface do.
         let feet_only = self.facing.is_some() && self.surface.places[domain.patch as usize].rims == 0;
+        let facing = self.facing.filter(|f| f.min_cosine >= 0.0).map_or(DVec3::ZERO, |f| f.normal);
         self.stack.clear();
         self.stack.push(Part { bicubic, s: 0.0, t: 0.0, size: 1.0, halvings: 0 });
         while let Some(part) = self.stack.pop() {
@@ -225,12 +242,19 @@ impl Search<'_> {
             if self.hopeless(box_distance(low, high, point)) {
                 continue;
             }
-            let convexity = Convexity::new(&part.bicubic, point);
-            if self.hopeless(convexity.at_least) || feet_only && !convexity.may_have_foot {
+            let view = View::new(&part.bicubic, point);
+            if self.hopeless(view.at_least) {
+                continue;
+            }
+            let convexity = view.convexity(facing);
+            if !convexity.may_face || feet_only && !convexity.may_have_foot {
                 continue;
             }
             self.parts += 1;
-            if convexity.convex || part.halvings >= MAX_HALVINGS || self.parts > MAX_PARTS {
+            let last = convexity.convex || part.halvings >= MAX_HALVINGS || self.parts > MAX_PARTS;
+            // Newton's method from the middle of a whole piece mostly finds the foot at once; the search that
+            // follows then only has to show that nothing is closer.
+            if last || part.halvings == 0 {
                 let (a, b, jet) = minimise(&part.bicubic, point);
                 let (s, t) = (part.s + part.size * a, part.t + part.size * b);
                 let normal = jet.du.cross(jet.dv);
@@ -238,7 +262,8 @@ impl Search<'_> {
                     jet.position - point,
                     Found { domain, s, t, position: jet.position + origin, normal },
                 );
-            } else {
+            }
+            if !last && !self.hopeless(view.at_least) {
                 self.split(&part, point);
             }
         }
