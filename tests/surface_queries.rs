@@ -7,7 +7,7 @@ use std::path::Path;
 use welt::io::{ImportOptions, import};
 use welt::mesh::{FaceId, Mesh, Polygons};
 use welt::subdivision::evaluate;
-use welt::surface::{ClosestOptions, Facing, LimitSurface, deviation, deviation_both_ways};
+use welt::surface::{ClosestOptions, Facing, LimitSurface, compare, deviation};
 
 const SHAPES: [&str; 8] = [
     "osd/catmark_cube.obj",
@@ -329,17 +329,18 @@ fn plane_with_extraordinary_points_is_the_plane() {
 
 #[test]
 fn deviation_of_a_shifted_plane_is_the_shift() {
-    let (low, high) = (sheet(6, |_, _| 0.0), sheet(6, |_, _| 0.5));
-    let (low, high) = (LimitSurface::new(&low), LimitSurface::new(&high));
+    let (low_mesh, high_mesh) = (sheet(6, |_, _| 0.0), sheet(6, |_, _| 0.5));
+    let (low, high) = (LimitSurface::new(&low_mesh), LimitSurface::new(&high_mesh));
     let up = deviation(&high, |_| true, &low, 8);
     assert_eq!(up.samples, 36 * 64);
     for value in [up.max, up.rms, up.p95] {
         assert!((value - 0.5).abs() < 1e-12);
     }
     assert!(up.at.expect("a place").signed > 0.0);
-    let both = deviation_both_ways((&low, |_| true), (&high, |_| true), 4);
-    assert_eq!(both.samples, 2 * 36 * 16);
-    assert!((both.rms - 0.5).abs() < 1e-12);
+    let compared = compare(&low_mesh, &high_mesh, 4, &welt::job::Job::new()).expect("not cancelled");
+    assert_eq!(compared.both.samples, 2 * 36 * 16);
+    assert!((compared.both.rms - 0.5).abs() < 1e-12);
+    assert!(compared.first_to_second.at.expect("a place").signed < 0.0);
 }
 
 #[test]

@@ -14,6 +14,10 @@ const BESIDE: f64 = 1.0 / 4096.0;
 
 /// One patch; see the [module](self).
 #[derive(Clone, Debug)]
+#[expect(
+    clippy::large_enum_variant,
+    reason = "most are regular; boxing them would cost each face an allocation"
+)]
 pub(crate) enum Patch {
     /// One bicubic piece.
     Regular(Bicubic),
@@ -23,6 +27,10 @@ pub(crate) enum Patch {
 
 /// A quarter of an irregular patch, with u and v running from the patch's corner: see [`from_quarter`].
 #[derive(Clone, Debug)]
+#[expect(
+    clippy::large_enum_variant,
+    reason = "most are regular; boxing them would cost each face an allocation"
+)]
 pub(crate) enum Quarter {
     /// One bicubic piece.
     Regular(Bicubic),
@@ -52,7 +60,7 @@ pub(crate) fn to_quarter(u: f64, v: f64) -> (usize, f64, f64) {
 
 impl Jet {
     /// A jet in the parameters of quarter `quarter` as one in the patch's.
-    pub(crate) fn from_quarter(self, quarter: usize) -> Self {
+    pub(crate) fn in_patch(self, quarter: usize) -> Self {
         let jet = self.scaled(2.0);
         let (du, dv) = match quarter {
             0 => (jet.du, jet.dv),
@@ -134,7 +142,7 @@ impl Patch {
                     }
                     Quarter::Corner(corner) => evaluate_corner(corner, x, y),
                 };
-                Evaluated { jet: found.jet.from_quarter(quarter), ..found }
+                Evaluated { jet: found.jet.in_patch(quarter), ..found }
             }
         }
     }

@@ -104,7 +104,7 @@ impl LimitSurface {
         };
         let (quarter, mut x, mut y) = to_quarter(u, v);
         match quarters[quarter] {
-            QuarterEntry::Regular(index) => smooth(piece(index).jet(x, y).from_quarter(quarter)),
+            QuarterEntry::Regular(index) => smooth(piece(index).jet(x, y).in_patch(quarter)),
             QuarterEntry::Corner { first_piece, corner } => {
                 let mut scale = 1.0;
                 for level in 0..LEVELS {
@@ -116,7 +116,7 @@ impl LimitSurface {
                         (false, true) => (2, x, y - 1.0),
                     };
                     let jet = piece(first_piece + 3 * level + side).jet(a, b).scaled(scale);
-                    return smooth(jet.from_quarter(quarter));
+                    return smooth(jet.in_patch(quarter));
                 }
                 let entry = &self.corners[corner as usize];
                 let mut found = evaluate_corner(&entry.corner, x, y);
@@ -126,7 +126,7 @@ impl LimitSurface {
                     found.jet = Jet { du: entry.limit.du, dv: entry.limit.dv, ..found.jet };
                     found.normal = entry.normal;
                 }
-                found.jet = found.jet.from_quarter(quarter);
+                found.jet = found.jet.in_patch(quarter);
                 found.into()
             }
         }
