@@ -236,7 +236,7 @@ fn lines_cross_closed_surfaces_an_even_number_of_times() {
             let direction = random.direction();
             let hits = surface.line_hits(target.position, direction);
             let tangent = hits.iter().any(|hit| hit.normal.dot(direction).abs() < 1e-4);
-            assert!(tangent || hits.len() % 2 == 0, "{file}: {} hits", hits.len());
+            assert!(tangent || hits.len().is_multiple_of(2), "{file}: {} hits", hits.len());
         }
     }
 }
@@ -366,4 +366,47 @@ fn senseless_queries_have_defined_results() {
     assert!(empty.closest(DVec3::ZERO, &plain).is_none());
     assert!(empty.line_hits(DVec3::ZERO, DVec3::Z).is_empty());
     assert!(empty.signed_distance(DVec3::ZERO, DVec3::Z).is_none());
+}
+
+#[test]
+fn degenerate_shapes_have_defined_results() {
+    let plain = ClosestOptions::default();
+    // A line that lies in a flat sheet: some points of it, all on the line.
+    let flat = LimitSurface::new(&sheet(6, |_, _| 0.0));
+    let hits = flat.line_hits(DVec3::new(-1.0, 2.3, 0.0), DVec3::new(1.0, 0.1, 0.0));
+    assert!(hits.iter().all(|hit| hit.position.z.abs() < 1e-12), "{hits:?}");
+    assert!(hits.windows(2).all(|pair| pair[0].s < pair[1].s));
+
+    // A mesh in one point, one on a line, and one of the largest numbers.
+    let point = LimitSurface::new(&map(&sheet(3, |_, _| 0.0), |_| DVec3::ONE));
+    assert_eq!(point.size(), 0.0);
+    assert!((point.closest(DVec3::ZERO, &plain).expect("a foot").distance - 3f64.sqrt()).abs() < 1e-12);
+    point.line_hits(DVec3::ZERO, DVec3::ONE);
+    let line = LimitSurface::new(&map(&sheet(3, |_, _| 0.0), |p| DVec3::X * p.x));
+    let foot = line.closest(DVec3::new(1.3, 0.7, 0.0), &plain).expect("a foot");
+    assert!((foot.distance - 0.7).abs() < 1e-9, "{}", foot.distance);
+    line.line_hits(DVec3::ZERO, DVec3::X);
+    let huge = LimitSurface::new(&map(&sheet(3, |x, y| x * y), |p| p * 1e300));
+    huge.closest(DVec3::ZERO, &plain);
+    huge.line_hits(DVec3::ZERO, DVec3::Z);
+}
+
+fn map(mesh: &Mesh, f: impl Fn(DVec3) -> DVec3) -> Mesh {
+    let mut mapped = mesh.clone();
+    for v in mesh.vertices() {
+        mapped.set_position(v, f(mesh.position(v)));
+    }
+    mapped
+}
+
+#[test]
+fn centre_of_a_symmetric_shape_has_a_closest_point() {
+    let Some(data) = common::shared_data() else { return };
+    let mesh = load(&data, "osd/catmark_cube.obj");
+    let surface = LimitSurface::new(&mesh);
+    let foot = surface.closest(DVec3::ZERO, &ClosestOptions::default()).expect("a foot");
+    let sampled = samples(&surface, 33);
+    let nearest = sampled.iter().map(|sample| sample.3.length()).fold(f64::INFINITY, f64::min);
+    assert!(foot.distance <= nearest + 1e-12, "{} {nearest}", foot.distance);
+    assert!(foot.distance > nearest - 1e-3, "{} {nearest}", foot.distance);
 }

@@ -453,7 +453,9 @@ fn newton_step(jet: &Jet, way: DVec3, gradient: [f64; 2], free: [bool; 2]) -> Op
         [false, true] => full[2] > 0.0,
         [true, true] => full[0] > 0.0 && determinant(&full) > 0.0,
     };
-    let h = if exact { full } else { first };
+    // Gauss-Newton, with a little damping where the patch is collapsed in one direction.
+    let damping = 1e-9 * (first[0] + first[2]);
+    let h = if exact { full } else { [first[0] + damping, first[1], first[2] + damping] };
     let step = match free {
         [true, true] => {
             let d = determinant(&h);
