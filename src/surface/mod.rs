@@ -11,6 +11,7 @@ mod deviation;
 mod freeze;
 mod line;
 mod line_piece;
+mod minimise;
 mod tree;
 
 pub use closest::{ClosestOptions, Facing, Foot};
