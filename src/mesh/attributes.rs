@@ -15,13 +15,26 @@ pub struct Symbol(pub(crate) u32);
 
 #[derive(Clone, Default, Debug)]
 pub(crate) struct Column {
-    pub(crate) values: FxHashMap<u32, Value>,
+    values: FxHashMap<u32, Value>,
+    /// Which ids of each block of 64 have a value: the usual answer "none" without a look at the large table.
+    present: FxHashMap<u32, u64>,
     index: FxHashMap<Key, BTreeSet<u32>>,
 }
 
 impl Column {
+    fn get(&self, id: u32) -> Option<&Value> {
+        let bits = self.present.get(&(id / 64))?;
+        if bits >> (id % 64) & 1 == 0 { None } else { self.values.get(&id) }
+    }
+
     fn set(&mut self, id: u32, value: Option<Value>) -> Option<Value> {
         let key = value.as_ref().map(Key::from);
+        let bit = 1 << (id % 64);
+        if key.is_some() {
+            *self.present.entry(id / 64).or_default() |= bit;
+        } else if let Some(bits) = self.present.get_mut(&(id / 64)) {
+            *bits &= !bit;
+        }
         let old = match value {
             Some(value) => self.values.insert(id, value),
             None => self.values.remove(&id),
@@ -71,7 +84,7 @@ impl Attributes {
     }
 
     pub(crate) fn get(&self, node: Node, name: Symbol) -> Option<&Value> {
-        self.columns.get(&(node.domain(), name))?.values.get(&node.id())
+        self.columns.get(&(node.domain(), name))?.get(node.id())
     }
 
     pub(crate) fn set(&mut self, node: Node, name: Symbol, value: Option<Value>) -> Option<Value> {
