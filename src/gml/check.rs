@@ -62,12 +62,19 @@ pub(crate) fn check(program: &Program, leaves: Leaves) -> Option<Diagnostic> {
             (Leaves::Nothing, []) => return None,
             (Leaves::Nothing, left) => {
                 let plural = if left.len() == 1 { "" } else { "s" };
-                (program.last_op(), format!("the action leaves {} value{plural} on the stack; it must leave none", left.len()))
+                (
+                    program.last_op(),
+                    format!(
+                        "the action leaves {} value{plural} on the stack; it must leave none",
+                        left.len()
+                    ),
+                )
             }
             (Leaves::OneNumber, [one]) if one.kinds.meets(Kinds::NUMBER) => return None,
-            (Leaves::OneNumber, [one]) => {
-                (program.last_op(), format!("the condition leaves a {}; it must leave one number", one.kinds.describe()))
-            }
+            (Leaves::OneNumber, [one]) => (
+                program.last_op(),
+                format!("the condition leaves a {}; it must leave one number", one.kinds.describe()),
+            ),
             (Leaves::OneNumber, left) => (
                 program.last_op(),
                 format!("the condition leaves {} values on the stack; it must leave one number", left.len()),
@@ -86,7 +93,10 @@ fn procedures_travel(program: &Program) -> bool {
         is_procedure(Some(op))
             && !match program.ops.get(i + 1) {
                 Some(Op::Word(word)) => takes_procedure(*word),
-                next => is_procedure(next) && matches!(program.ops.get(i + 2), Some(Op::Word(Word::IfElse | Word::Catch))),
+                next => {
+                    is_procedure(next)
+                        && matches!(program.ops.get(i + 2), Some(Op::Word(Word::IfElse | Word::Catch)))
+                }
             }
     })
 }
@@ -155,9 +165,9 @@ impl Checker<'_> {
     }
 
     fn pop(&mut self, at: usize, word: &str) -> Result<Known, End> {
-        self.stack
-            .pop()
-            .ok_or_else(|| End::Mistake(at, format!("`{word}` needs more values than there are on the stack")))
+        self.stack.pop().ok_or_else(|| {
+            End::Mistake(at, format!("`{word}` needs more values than there are on the stack"))
+        })
     }
 
     /// Takes what a word takes; the top value last.
@@ -167,8 +177,12 @@ impl Checker<'_> {
         for wanted in signature.takes.iter().rev() {
             let known = self.pop(at, signature.name)?;
             if !known.kinds.meets(*wanted) {
-                let message =
-                    format!("`{}` needs a {}, not a {}", signature.name, wanted.describe(), known.kinds.describe());
+                let message = format!(
+                    "`{}` needs a {}, not a {}",
+                    signature.name,
+                    wanted.describe(),
+                    known.kinds.describe()
+                );
                 return Err(End::Mistake(at, message));
             }
             taken.push(known);
