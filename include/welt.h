@@ -113,6 +113,11 @@ extern "C" {
 #define WELT_ERROR_SYNTAX -9
 
 /*
+ A rule failed, or the rules do not come to an end; the message names rule and place. The mesh is as it was before.
+ */
+#define WELT_ERROR_RULE -10
+
+/*
  The place is no element of a mesh: the input as a whole, or a place in a text.
  */
 #define WELT_PLACE_WHOLE 0
@@ -188,6 +193,21 @@ extern "C" {
 #define WELT_PARENT_FACE 2
 
 /*
+ Leave vertices where the rules put them.
+ */
+#define WELT_FIT_NONE 0
+
+/*
+ The iteration of Thaller, Augsdoerfer and Fellner 2016, section 5.3.
+ */
+#define WELT_FIT_LOOP 1
+
+/*
+ The sparse system which that iteration converges to.
+ */
+#define WELT_FIT_SOLVE 2
+
+/*
  Why a call failed: a code, a message of one line, and the places it speaks of. Never changes.
  */
 typedef struct welt_error welt_error;
@@ -215,6 +235,22 @@ typedef struct welt_refinement welt_refinement;
 typedef struct welt_report welt_report;
 
 /*
+ A rule set. Never changes.
+ */
+typedef struct welt_rules welt_rules;
+
+/*
+ Marked edges: which edges of a mesh a feature crosses, and where. Never changes; it belongs to the mesh as it was when the
+ selection was made.
+ */
+typedef struct welt_selection welt_selection;
+
+/*
+ A limit surface, frozen: it stays as it is when its mesh changes. Never changes.
+ */
+typedef struct welt_surface welt_surface;
+
+/*
  How a file is taken over. Set it by welt_import_options_init, then change what differs.
  */
 typedef struct {
@@ -232,6 +268,28 @@ typedef struct {
      */
     double weld;
 } welt_import_options;
+
+/*
+ How a feature is applied. Set it by welt_feature_options_init, then change what differs.
+ */
+typedef struct {
+    /*
+     Set by welt_feature_options_init; leave it.
+     */
+    uint32_t struct_size;
+    /*
+     How the changed mesh is fitted to the surface as it was: one of WELT_FIT_*. Default WELT_FIT_SOLVE.
+     */
+    uint32_t fit;
+    /*
+     Not 0: measure deviations and look for thin walls; costs more than the feature. Default 0.
+     */
+    uint32_t deviation;
+    /*
+     Leave it 0.
+     */
+    uint32_t reserved;
+} welt_feature_options;
 
 /*
  The version of the library that runs, in the form of WELT_VERSION. It can differ from that of the header when the
@@ -637,34 +695,6 @@ int32_t welt_mesh_limit_normals(const welt_mesh *mesh,
                                 welt_error **error);
 
 /*
- Evaluates the limit surface at parameters of faces.
-
- mesh: must not be NULL.
- faces: the face of each point.
- corners: the patch of each point; NULL for 0 everywhere. A quad has patch 0 only, another face one per corner.
- parameters: u and v of each point, in [0, 1]; what lies outside is moved to the nearest inside. On a quad (0, 0) is its
- first corner, u runs along the first edge and v against the last one. On patch c of another face (0, 0) is corner c,
- (1, 0) the middle of the edge that leaves it, (0, 1) that of the edge that arrives, (1, 1) the face point.
- count: number of points.
- values: receives per point the position, the derivatives by u and by v, and those by u twice, by u and v, by v twice: 18
- doubles. At an extraordinary vertex the first derivatives are tangents of conventional length, and the second ones,
- which are not defined, are NaN. Where the face is no part of the limit surface (a hole, or by the boundary rule) all
- are NaN.
- capacity: room in values, at least 18 * count doubles.
-
- Fails with WELT_ERROR_ARGUMENT where there is no such face or patch, or a parameter is NaN. Since: 0.1.
- */
-WELT_API
-int32_t welt_mesh_evaluate(const welt_mesh *mesh,
-                           const uint32_t *faces,
-                           const uint32_t *corners,
-                           const double *parameters,
-                           size_t count,
-                           double *values,
-                           size_t capacity,
-                           welt_error **error);
-
-/*
  Refines a mesh.
 
  mesh: must not be NULL.
@@ -777,6 +807,325 @@ int32_t welt_refinement_face_parents(const welt_refinement *refinement,
                                      uint32_t *corners,
                                      size_t capacity,
                                      welt_error **error);
+
+/*
+ Finds the edges that selectors name.
+
+ mesh: must not be NULL.
+ selectors: one or more, separated by blanks or newlines, UTF-8: edge:A,B[@t] (crossed at t in (0, 1) from A, 0.5 unless
+ given), ring:A,B (the edges a loop cut from AB crosses), path:A,B:C,D (shortest path of quads between two edges),
+ cut:V,V,... (all edges that leave a set of vertices), select:FILE (JSON). Vertices are 0-based; #kind may follow.
+ length: in bytes, SIZE_MAX for a NUL-terminated text.
+ selection: receives the handle; free it with welt_selection_free.
+
+ Fails with WELT_ERROR_ARGUMENT: what is wrong and what there is. Since: 0.1.
+ */
+WELT_API
+int32_t welt_selection_create(const welt_mesh *mesh,
+                              const char *selectors,
+                              size_t length,
+                              welt_selection **selection,
+                              welt_error **error);
+
+/*
+ Frees a selection. NULL is allowed. Since: 0.1.
+ */
+WELT_API void welt_selection_free(welt_selection *selection);
+
+/*
+ Number of marked edges; 0 where selection is NULL. Since: 0.1.
+ */
+WELT_API size_t welt_selection_count(const welt_selection *selection);
+
+/*
+ Writes the marked edges.
+
+ selection: must not be NULL.
+ mesh: the mesh the selection was made on, unchanged since.
+ edges: receives two vertices per edge.
+ capacity: room in edges, at least 2 * welt_selection_count(selection) elements.
+ places: may be NULL; else receives, per edge, where it is crossed, in (0, 1) from the first vertex.
+ place_capacity: room in places, at least welt_selection_count(selection) doubles.
+
+ Since: 0.1.
+ */
+WELT_API
+int32_t welt_selection_edges(const welt_selection *selection,
+                             const welt_mesh *mesh,
+                             uint32_t *edges,
+                             size_t capacity,
+                             double *places,
+                             size_t place_capacity,
+                             welt_error **error);
+
+/*
+ Stores the marks on the mesh, as the attributes color and t of both half-edges, for rules that look for them.
+ welt_feature_apply and welt_rules_apply do so by themselves.
+
+ mesh: the mesh the selection was made on.
+ selection: must not be NULL.
+
+ Since: 0.1.
+ */
+WELT_API int32_t welt_mesh_mark(welt_mesh *mesh, const welt_selection *selection, welt_error **error);
+
+/*
+ Loads a rule file and checks it.
+
+ path: UTF-8.
+ path_length: in bytes, SIZE_MAX for a NUL-terminated path.
+ rules: receives the handle; free it with welt_rules_free.
+
+ Fails with WELT_ERROR_FILE, or with WELT_ERROR_SYNTAX: each place of the error has file, line and column. Since: 0.1.
+ */
+WELT_API
+int32_t welt_rules_load(const char *path,
+                        size_t path_length,
+                        welt_rules **rules,
+                        welt_error **error);
+
+/*
+ Gives the rules of linear features that come with the library.
+
+ rules: receives the handle; free it with welt_rules_free.
+
+ Since: 0.1.
+ */
+WELT_API int32_t welt_rules_linear(welt_rules **rules, welt_error **error);
+
+/*
+ Frees rules. NULL is allowed. Since: 0.1.
+ */
+WELT_API void welt_rules_free(welt_rules *rules);
+
+/*
+ Number of parameters that the rules declare; 0 where rules is NULL. Since: 0.1.
+ */
+WELT_API size_t welt_rules_parameter_count(const welt_rules *rules);
+
+/*
+ Name of parameter number index, valid until the rules are freed; empty where there is none. Since: 0.1.
+ */
+WELT_API const char *welt_rules_parameter_name(const welt_rules *rules, size_t index);
+
+/*
+ Unit of parameter number index, such as length, angle or count, valid until the rules are freed; empty where there is
+ none. Since: 0.1.
+ */
+WELT_API
+const char *welt_rules_parameter_unit(const welt_rules *rules,
+                                      size_t index);
+
+/*
+ One line of help for parameter number index, valid until the rules are freed; empty where there is none. Since: 0.1.
+ */
+WELT_API
+const char *welt_rules_parameter_help(const welt_rules *rules,
+                                      size_t index);
+
+/*
+ Default of parameter number index; 0 where there is none. Since: 0.1.
+ */
+WELT_API double welt_rules_parameter_default(const welt_rules *rules, size_t index);
+
+/*
+ Writes the least and the greatest value of parameter number index; they may be infinite.
+
+ rules: must not be NULL.
+ index: below welt_rules_parameter_count(rules).
+
+ Since: 0.1.
+ */
+WELT_API
+int32_t welt_rules_parameter_range(const welt_rules *rules,
+                                   size_t index,
+                                   double *low,
+                                   double *high,
+                                   welt_error **error);
+
+/*
+ Sets options to their defaults. options: must not be NULL. size: sizeof *options. Fails with WELT_ERROR_ARGUMENT where the
+ size is none that the library knows. Since: 0.1.
+ */
+WELT_API
+int32_t welt_feature_options_init(welt_feature_options *options,
+                                  size_t size);
+
+/*
+ Lists the features that welt_feature_apply knows.
+
+ list: receives a report whose JSON is an array of features, each with name, help and parameters (name, default, help);
+ free it with welt_report_free.
+
+ Since: 0.1.
+ */
+WELT_API
+int32_t welt_feature_list(welt_report **list,
+                          welt_error **error);
+
+/*
+ Applies a feature: rewrites the mesh along the marked edges, fits it to the surface as it was, displaces it to the asked
+ width and depth.
+
+ mesh: is changed; vertices keep their numbers, new ones follow.
+ selection: the marked edges, made on this mesh.
+ name: the feature, one that welt_feature_list lists, such as groove.
+ name_length: in bytes, SIZE_MAX for a NUL-terminated name.
+ settings: may be NULL; NAME=VALUE, separated by blanks, such as "width=0.2 depth=30%": model units, or a percentage of
+ the length of the marked edge.
+ settings_length: in bytes, SIZE_MAX for a NUL-terminated text.
+ options: may be NULL for defaults.
+ job: may be NULL.
+ report: may be NULL; else receives what was done: counts, rules, leftovers, width and depth asked and reached,
+ deviations, warnings. Free it with welt_report_free.
+
+ Fails with WELT_ERROR_ARGUMENT (an unknown feature or setting, a width that an edge cannot take), WELT_ERROR_RULE,
+ WELT_ERROR_CANCELLED; the mesh is as it was before then. Since: 0.1.
+ */
+WELT_API
+int32_t welt_feature_apply(welt_mesh *mesh,
+                           const welt_selection *selection,
+                           const char *name,
+                           size_t name_length,
+                           const char *settings,
+                           size_t settings_length,
+                           const welt_feature_options *options,
+                           const welt_job *job,
+                           welt_report **report,
+                           welt_error **error);
+
+/*
+ Runs a rule set on the marked edges and fits the changed mesh to the surface as it was; nothing is displaced.
+
+ mesh, selection, options, job, report: as for welt_feature_apply.
+ rules: must not be NULL.
+ settings: may be NULL; NAME=VALUE with numbers, separated by blanks, for parameters of the rules.
+ settings_length: in bytes, SIZE_MAX for a NUL-terminated text.
+
+ Fails as welt_feature_apply does. Since: 0.1.
+ */
+WELT_API
+int32_t welt_rules_apply(welt_mesh *mesh,
+                         const welt_selection *selection,
+                         const welt_rules *rules,
+                         const char *settings,
+                         size_t settings_length,
+                         const welt_feature_options *options,
+                         const welt_job *job,
+                         welt_report **report,
+                         welt_error **error);
+
+/*
+ Displaces vertices along the normals of the limit surface, so that their limit points rise by the given heights, all
+ together.
+
+ mesh: is changed.
+ vertices: the vertices, each once.
+ heights: how far the limit point of each rises, in model units; negative is inwards.
+ count: number of vertices and of heights.
+
+ Fails with WELT_ERROR_ARGUMENT where a vertex does not exist, or has no normal (the places list them), or a height is not
+ finite; the mesh is as it was before then. Since: 0.1.
+ */
+WELT_API
+int32_t welt_mesh_displace(welt_mesh *mesh,
+                           const uint32_t *vertices,
+                           const double *heights,
+                           size_t count,
+                           welt_error **error);
+
+/*
+ Measures how far the limit surfaces of two control meshes are apart, both ways.
+
+ first, second: must not be NULL.
+ samples: samples per side of each face, 1 to 64; 8 is usual.
+ values: receives the largest distance, the root mean square and the distance that 95 % of the area do not exceed, in
+ model units: 3 doubles.
+ job: may be NULL.
+
+ Since: 0.1.
+ */
+WELT_API
+int32_t welt_mesh_deviation(const welt_mesh *first,
+                            const welt_mesh *second,
+                            uint32_t samples,
+                            double *values,
+                            const welt_job *job,
+                            welt_error **error);
+
+/*
+ Freezes the limit surface of a mesh.
+
+ mesh: must not be NULL.
+ faces: the faces whose surface is frozen; NULL for all. Cost follows their number.
+ count: number of faces; 0 where faces is NULL.
+ surface: receives the handle; free it with welt_surface_free.
+
+ Since: 0.1.
+ */
+WELT_API
+int32_t welt_surface_create(const welt_mesh *mesh,
+                            const uint32_t *faces,
+                            size_t count,
+                            welt_surface **surface,
+                            welt_error **error);
+
+/*
+ Frees a surface. NULL is allowed. Since: 0.1.
+ */
+WELT_API void welt_surface_free(welt_surface *surface);
+
+/*
+ Evaluates the limit surface at parameters of faces.
+
+ surface: must not be NULL.
+ faces: the face of each point.
+ corners: the patch of each point; NULL for 0 everywhere. A quad has patch 0 only, another face one per corner.
+ parameters: u and v of each point, in [0, 1]; what lies outside is moved to the nearest inside. On a quad (0, 0) is its
+ first corner, u runs along the first edge and v against the last one. On patch c of another face (0, 0) is corner c,
+ (1, 0) the middle of the edge that leaves it, (0, 1) that of the edge that arrives, (1, 1) the face point.
+ count: number of points.
+ values: receives per point the position, the derivatives by u and by v, and those by u twice, by u and v, by v twice: 18
+ doubles. At an extraordinary vertex the first derivatives are tangents of conventional length, and the second ones,
+ which are not defined, are NaN. Where the surface has no part of the face, which may not have been frozen or is a hole
+ or left out by the boundary rule, all are NaN.
+ capacity: room in values, at least 18 * count doubles.
+
+ Fails with WELT_ERROR_ARGUMENT where a face has no such patch, or a parameter is NaN. Since: 0.1.
+ */
+WELT_API
+int32_t welt_surface_evaluate(const welt_surface *surface,
+                              const uint32_t *faces,
+                              const uint32_t *corners,
+                              const double *parameters,
+                              size_t count,
+                              double *values,
+                              size_t capacity,
+                              welt_error **error);
+
+/*
+ Moves vertices so that their limit points lie on a frozen surface.
+
+ mesh: is changed.
+ vertices: the vertices that may move; NULL for all.
+ count: number of vertices; 0 where vertices is NULL.
+ surface: must not be NULL.
+ fit: one of WELT_FIT_*.
+ job: may be NULL.
+ report: may be NULL; else receives method, steps, stop reason, residual and the vertices that found no surface. Free it
+ with welt_report_free.
+
+ Fails with WELT_ERROR_ARGUMENT and WELT_ERROR_CANCELLED; the mesh is as it was before then. Since: 0.1.
+ */
+WELT_API
+int32_t welt_mesh_fit(welt_mesh *mesh,
+                      const uint32_t *vertices,
+                      size_t count,
+                      const welt_surface *surface,
+                      uint32_t fit,
+                      const welt_job *job,
+                      welt_report **report,
+                      welt_error **error);
 
 #ifdef __cplusplus
 }

@@ -41,7 +41,22 @@ fn header_is_up_to_date() {
     let config = cbindgen::Config::from_file(root().join("cbindgen.toml")).unwrap();
     let mut builder = cbindgen::Builder::new().with_config(config);
     // The sections of the header, in the order in which a reader needs them.
-    for section in ["version", "status", "error", "job", "report", "mesh", "scheme", "file", "limit", "refinement"] {
+    for section in [
+        "version",
+        "status",
+        "error",
+        "job",
+        "report",
+        "mesh",
+        "scheme",
+        "file",
+        "limit",
+        "refinement",
+        "selection",
+        "rules",
+        "feature",
+        "surface",
+    ] {
         builder = builder.with_src(root().join("src/ffi").join(section).with_extension("rs"));
     }
     let mut text = Vec::new();

@@ -15,7 +15,8 @@ fn model(name: &str) -> Mesh {
 }
 
 fn cube() -> Mesh {
-    let positions = (0..8).map(|i| DVec3::new((i & 1).into(), (i >> 1 & 1).into(), (i >> 2).into())).collect();
+    let positions =
+        (0..8).map(|i| DVec3::new((i & 1).into(), (i >> 1 & 1).into(), (i >> 2).into())).collect();
     let faces: [&[u32]; 6] =
         [&[0, 2, 3, 1], &[4, 5, 7, 6], &[0, 1, 5, 4], &[2, 6, 7, 3], &[0, 4, 6, 2], &[1, 3, 7, 5]];
     Mesh::from_polygons(&Polygons::new(positions, &faces)).expect("a cube")

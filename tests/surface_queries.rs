@@ -7,7 +7,7 @@ use std::path::Path;
 use welt::io::{ImportOptions, import};
 use welt::mesh::{FaceId, Mesh, Polygons};
 use welt::subdivision::evaluate;
-use welt::surface::{ClosestOptions, Facing, LimitSurface, deviation, deviation_both_ways};
+use welt::surface::{ClosestOptions, Facing, LimitSurface, compare, deviation};
 
 const SHAPES: [&str; 8] = [
     "osd/catmark_cube.obj",
@@ -236,7 +236,7 @@ fn lines_cross_closed_surfaces_an_even_number_of_times() {
             let direction = random.direction();
             let hits = surface.line_hits(target.position, direction);
             let tangent = hits.iter().any(|hit| hit.normal.dot(direction).abs() < 1e-4);
-            assert!(tangent || hits.len() % 2 == 0, "{file}: {} hits", hits.len());
+            assert!(tangent || hits.len().is_multiple_of(2), "{file}: {} hits", hits.len());
         }
     }
 }
@@ -263,10 +263,8 @@ fn sheet(n: u32, height: impl Fn(f64, f64) -> f64) -> Mesh {
 fn height_fields_of_a_quadratic_are_that_quadratic() {
     // A uniform cubic B-spline whose control heights are x^2 has the heights x^2 + 1/3.
     let mesh = sheet(10, |x, y| 0.1 * (x * x - 2.0 * y * y + x * y));
-    let inner: Vec<FaceId> = mesh
-        .faces()
-        .filter(|&f| mesh.face_vertices(f).all(|v| !mesh.is_boundary_vertex(v)))
-        .collect();
+    let inner: Vec<FaceId> =
+        mesh.faces().filter(|&f| mesh.face_vertices(f).all(|v| !mesh.is_boundary_vertex(v))).collect();
     let surface = LimitSurface::around(&mesh, &inner);
     assert_eq!(surface.faces().len(), 64);
     let height = |x: f64, y: f64| 0.1 * (x * x - 2.0 * y * y + x * y - 1.0 / 3.0);
@@ -279,10 +277,13 @@ fn height_fields_of_a_quadratic_are_that_quadratic() {
         assert!((hits[0].s - (5.0 - height(x, y))).abs() < 1e-12);
         let normal = DVec3::new(-0.1 * (2.0 * x + y), -0.1 * (x - 4.0 * y), 1.0).normalize();
         assert!(hits[0].normal.distance(normal) < 1e-12);
-        let foot = surface
-            .closest(hits[0].position + 0.1 * normal, &ClosestOptions::default())
-            .expect("a foot");
-        assert!(foot.position.distance(hits[0].position) < 1e-12, "{}", foot.position.distance(hits[0].position));
+        let foot =
+            surface.closest(hits[0].position + 0.1 * normal, &ClosestOptions::default()).expect("a foot");
+        assert!(
+            foot.position.distance(hits[0].position) < 1e-12,
+            "{}",
+            foot.position.distance(hits[0].position)
+        );
     }
 }
 
@@ -328,17 +329,18 @@ fn plane_with_extraordinary_points_is_the_plane() {
 
 #[test]
 fn deviation_of_a_shifted_plane_is_the_shift() {
-    let (low, high) = (sheet(6, |_, _| 0.0), sheet(6, |_, _| 0.5));
-    let (low, high) = (LimitSurface::new(&low), LimitSurface::new(&high));
+    let (low_mesh, high_mesh) = (sheet(6, |_, _| 0.0), sheet(6, |_, _| 0.5));
+    let (low, high) = (LimitSurface::new(&low_mesh), LimitSurface::new(&high_mesh));
     let up = deviation(&high, |_| true, &low, 8);
     assert_eq!(up.samples, 36 * 64);
     for value in [up.max, up.rms, up.p95] {
         assert!((value - 0.5).abs() < 1e-12);
     }
     assert!(up.at.expect("a place").signed > 0.0);
-    let both = deviation_both_ways((&low, |_| true), (&high, |_| true), 4);
-    assert_eq!(both.samples, 2 * 36 * 16);
-    assert!((both.rms - 0.5).abs() < 1e-12);
+    let compared = compare(&low_mesh, &high_mesh, 4, &welt::job::Job::new()).expect("not cancelled");
+    assert_eq!(compared.both.samples, 2 * 36 * 16);
+    assert!((compared.both.rms - 0.5).abs() < 1e-12);
+    assert!(compared.first_to_second.at.expect("a place").signed < 0.0);
 }
 
 #[test]
@@ -364,4 +366,47 @@ fn senseless_queries_have_defined_results() {
     assert!(empty.closest(DVec3::ZERO, &plain).is_none());
     assert!(empty.line_hits(DVec3::ZERO, DVec3::Z).is_empty());
     assert!(empty.signed_distance(DVec3::ZERO, DVec3::Z).is_none());
+}
+
+#[test]
+fn degenerate_shapes_have_defined_results() {
+    let plain = ClosestOptions::default();
+    // A line that lies in a flat sheet: some points of it, all on the line.
+    let flat = LimitSurface::new(&sheet(6, |_, _| 0.0));
+    let hits = flat.line_hits(DVec3::new(-1.0, 2.3, 0.0), DVec3::new(1.0, 0.1, 0.0));
+    assert!(hits.iter().all(|hit| hit.position.z.abs() < 1e-12), "{hits:?}");
+    assert!(hits.windows(2).all(|pair| pair[0].s < pair[1].s));
+
+    // A mesh in one point, one on a line, and one of the largest numbers.
+    let point = LimitSurface::new(&map(&sheet(3, |_, _| 0.0), |_| DVec3::ONE));
+    assert_eq!(point.size(), 0.0);
+    assert!((point.closest(DVec3::ZERO, &plain).expect("a foot").distance - 3f64.sqrt()).abs() < 1e-12);
+    point.line_hits(DVec3::ZERO, DVec3::ONE);
+    let line = LimitSurface::new(&map(&sheet(3, |_, _| 0.0), |p| DVec3::X * p.x));
+    let foot = line.closest(DVec3::new(1.3, 0.7, 0.0), &plain).expect("a foot");
+    assert!((foot.distance - 0.7).abs() < 1e-9, "{}", foot.distance);
+    line.line_hits(DVec3::ZERO, DVec3::X);
+    let huge = LimitSurface::new(&map(&sheet(3, |x, y| x * y), |p| p * 1e300));
+    huge.closest(DVec3::ZERO, &plain);
+    huge.line_hits(DVec3::ZERO, DVec3::Z);
+}
+
+fn map(mesh: &Mesh, f: impl Fn(DVec3) -> DVec3) -> Mesh {
+    let mut mapped = mesh.clone();
+    for v in mesh.vertices() {
+        mapped.set_position(v, f(mesh.position(v)));
+    }
+    mapped
+}
+
+#[test]
+fn centre_of_a_symmetric_shape_has_a_closest_point() {
+    let Some(data) = common::shared_data() else { return };
+    let mesh = load(&data, "osd/catmark_cube.obj");
+    let surface = LimitSurface::new(&mesh);
+    let foot = surface.closest(DVec3::ZERO, &ClosestOptions::default()).expect("a foot");
+    let sampled = samples(&surface, 33);
+    let nearest = sampled.iter().map(|sample| sample.3.length()).fold(f64::INFINITY, f64::min);
+    assert!(foot.distance <= nearest + 1e-12, "{} {nearest}", foot.distance);
+    assert!(foot.distance > nearest - 1e-3, "{} {nearest}", foot.distance);
 }

@@ -1,8 +1,12 @@
 //! Why a call failed, before it becomes an error handle.
 
 use super::status::*;
+use crate::feature::{FeatureError, SettingError};
+use crate::gml::Diagnostic;
+use crate::grammar::{RulesError, RunError};
 use crate::io::{ExportError, ImportError};
 use crate::job::Cancelled;
+use crate::mark::{MarkError, SelectorError};
 use crate::mesh::{Defect, Defects};
 use crate::subdivision::RefineError;
 
@@ -134,5 +138,81 @@ impl From<RefineError> for Failure {
 impl From<Cancelled> for Failure {
     fn from(cancelled: Cancelled) -> Self {
         Self::new(WELT_ERROR_CANCELLED, cancelled.to_string())
+    }
+}
+
+impl From<SettingError> for Failure {
+    fn from(error: SettingError) -> Self {
+        Self::argument(error.to_string())
+    }
+}
+
+impl From<SelectorError> for Failure {
+    fn from(error: SelectorError) -> Self {
+        Self::argument(error.to_string())
+    }
+}
+
+impl From<MarkError> for Failure {
+    fn from(error: MarkError) -> Self {
+        let code =
+            if matches!(error, MarkError::File { .. }) { WELT_ERROR_FILE } else { WELT_ERROR_ARGUMENT };
+        Self::new(code, error.to_string())
+    }
+}
+
+impl From<&Diagnostic> for Place {
+    fn from(diagnostic: &Diagnostic) -> Self {
+        let text = Some(TextPlace {
+            file: diagnostic.file.clone(),
+            line: u32::try_from(diagnostic.line).unwrap_or(0),
+            column: u32::try_from(diagnostic.column).unwrap_or(0),
+        });
+        Self { location: Location::Whole, message: diagnostic.message.clone(), text }
+    }
+}
+
+impl From<RulesError> for Failure {
+    fn from(error: RulesError) -> Self {
+        let places: Vec<Place> = error.diagnostics.iter().map(Place::from).collect();
+        let message = match places.as_slice() {
+            [only] => only.message.clone(),
+            [first, ..] => format!("{}; and {} more mistakes", first.message, places.len() - 1),
+            [] => String::new(),
+        };
+        Self { code: WELT_ERROR_SYNTAX, message, places }
+    }
+}
+
+impl From<RunError> for Failure {
+    fn from(error: RunError) -> Self {
+        let message = error.to_string();
+        match error {
+            RunError::UnknownParameter { .. } | RunError::ParameterOutOfRange { .. } => {
+                Self::argument(message)
+            }
+            RunError::Cancelled(cancelled) => cancelled.into(),
+            RunError::Script { diagnostic, .. }
+            | RunError::Runaway { diagnostic, .. }
+            | RunError::BrokenFace { diagnostic, .. } => {
+                Self { code: WELT_ERROR_RULE, message, places: vec![Place::from(&*diagnostic)] }
+            }
+        }
+    }
+}
+
+impl From<FeatureError> for Failure {
+    fn from(error: FeatureError) -> Self {
+        let message = error.to_string();
+        match error {
+            FeatureError::Width(width) => {
+                let location = Location::Edge(width.edge.0, width.edge.1);
+                let place = Place { location, message: message.clone(), text: None };
+                Self { code: WELT_ERROR_ARGUMENT, message, places: vec![place] }
+            }
+            FeatureError::Rules(error) => error.into(),
+            FeatureError::Cancelled(cancelled) => cancelled.into(),
+            _ => Self::argument(message),
+        }
     }
 }

@@ -40,12 +40,20 @@ pub unsafe extern "C" fn welt_mesh_set_subdivision(
             WELT_BOUNDARY_NONE => BoundaryRule::None,
             WELT_BOUNDARY_EDGE_ONLY => BoundaryRule::EdgeOnly,
             WELT_BOUNDARY_EDGE_AND_CORNER => BoundaryRule::EdgeAndCorner,
-            _ => return Err(Failure::argument(format!("boundary is {boundary}, which is no WELT_BOUNDARY_*"))),
+            _ => {
+                return Err(Failure::argument(format!(
+                    "boundary is {boundary}, which is no WELT_BOUNDARY_*"
+                )));
+            }
         };
         let creasing = match creasing {
             WELT_CREASING_UNIFORM => Creasing::Uniform,
             WELT_CREASING_CHAIKIN => Creasing::Chaikin,
-            _ => return Err(Failure::argument(format!("creasing is {creasing}, which is no WELT_CREASING_*"))),
+            _ => {
+                return Err(Failure::argument(format!(
+                    "creasing is {creasing}, which is no WELT_CREASING_*"
+                )));
+            }
         };
         mesh.change(|mesh| {
             mesh.set_subdivision(SubdivisionOptions { boundary, creasing });
@@ -73,8 +81,9 @@ pub unsafe extern "C" fn welt_mesh_set_edge_sharpness(
     error: *mut *mut WeltError,
 ) -> i32 {
     let body = || {
-        let entries =
-            count.checked_mul(2).ok_or_else(|| Failure::argument(format!("count is {count}, which is too large")))?;
+        let entries = count
+            .checked_mul(2)
+            .ok_or_else(|| Failure::argument(format!("count is {count}, which is too large")))?;
         // SAFETY: the header asks for a living mesh that nobody else uses and for arrays of these counts.
         let (mesh, vertices, sharpness) = unsafe {
             (

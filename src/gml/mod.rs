@@ -5,6 +5,7 @@
 
 mod arithmetic;
 mod budget;
+mod check;
 mod collection;
 mod compile;
 mod control;
@@ -29,5 +30,6 @@ pub use program::{Program, StringId, Strings};
 pub use source::{Diagnostic, Source, Span};
 pub use value::Value;
 
+pub(crate) use check::{Leaves, check};
 pub(crate) use compile::{compile_tokens, is_word};
 pub(crate) use lex::{Cursor, script};

@@ -4,7 +4,7 @@ use super::error::RulesError;
 use super::pattern::{Pattern, infer_kinds};
 use super::plan::{Graph, NodePlan, Step, edges, number_tests};
 use super::ruleset::{Forbidden, Loader, Parameter, Rule, RuleSet};
-use crate::gml::{Cursor, Diagnostic, Scope, Source, Span, compile_tokens, is_word, script};
+use crate::gml::{Cursor, Diagnostic, Leaves, Scope, Source, Span, check, compile_tokens, is_word, script};
 use crate::mesh::Domain;
 use std::sync::Arc;
 
@@ -264,7 +264,12 @@ impl Reader<'_> {
                     let end = Span { start: end.saturating_sub(1), end };
                     let scope = Scope { nodes: &nodes, parameters: &parameters, read_only: part == "where" };
                     let strings = &mut self.rules.strings;
+                    let mistakes = self.errors.len();
                     let program = compile_tokens(&source, &tokens, end, &scope, strings, &mut self.errors);
+                    if mistakes == self.errors.len() {
+                        let leaves = if part == "action" { Leaves::Nothing } else { Leaves::OneNumber };
+                        self.errors.extend(check(&program, leaves));
+                    }
                     if part == "action" {
                         break program;
                     }

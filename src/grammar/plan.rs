@@ -110,6 +110,8 @@ pub(super) struct Reach {
     pub(super) path: Vec<Hop>,
     /// Kind of the node at the end of each hop.
     pub(super) domains: Vec<Domain>,
+    /// No hop leaves a choice.
+    pub(super) single: bool,
 }
 
 /// A pattern with its names and kinds resolved.
@@ -308,8 +310,9 @@ impl Graph {
             .iter()
             .zip(paths)
             .filter_map(|(plan, path)| {
-                let (path, domains) = path?.into_iter().unzip();
-                Some(Reach { domain: plan.domain, path, domains })
+                let (path, domains): (Vec<Hop>, _) = path?.into_iter().unzip();
+                let single = path.iter().all(|hop| matches!(hop, Hop::One(_)));
+                Some(Reach { domain: plan.domain, path, domains, single })
             })
             .collect()
     }

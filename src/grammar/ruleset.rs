@@ -5,11 +5,12 @@ use super::parse;
 use super::plan::{Anchor, NodePlan, Plan, Reach};
 use crate::gml::{Diagnostic, Program, Source, Span, Strings};
 use crate::mesh::Domain;
+use serde::Serialize;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 /// A number that a rule set lets its user choose.
-#[derive(Clone, PartialEq, Debug)]
+#[derive(Clone, PartialEq, Debug, Serialize)]
 pub struct Parameter {
     /// Its name in the scripts.
     pub name: String,

@@ -117,6 +117,7 @@ struct Run<'a> {
     // Scratch lists of `after`.
     changed: Vec<Node>,
     faces: Vec<FaceId>,
+    near: Vec<u32>,
     walk: [Vec<u32>; 2],
 }
 
@@ -153,6 +154,7 @@ impl<'a> Run<'a> {
             phase: 0..0,
             changed: Vec::new(),
             faces: Vec::new(),
+            near: Vec::new(),
             walk: [Vec::new(), Vec::new()],
         })
     }
@@ -354,16 +356,19 @@ impl<'a> Run<'a> {
         let view = View { mesh, symbols: &self.symbols };
         for index in self.phase.clone() {
             let rule = &self.rules.rules[index];
-            let queue = &mut self.queues[index];
             let plan = &rule.plans[rule.anchor_node];
+            self.near.clear();
             for &node in &self.changed {
                 for reach in rule.reach.iter().filter(|reach| reach.domain == node.domain()) {
-                    anchors(view, node, reach, &mut self.walk);
-                    for &id in &self.walk[0] {
-                        if view.may_anchor(Node::new(plan.domain, id), plan, &rule.anchor) {
-                            queue.push(id);
-                        }
-                    }
+                    anchors(view, node, reach, &mut self.walk, &mut self.near);
+                }
+            }
+            // Looked at once each: the test of an attribute costs more than the walks.
+            self.near.sort_unstable();
+            self.near.dedup();
+            for &id in &self.near {
+                if view.may_anchor(Node::new(plan.domain, id), plan, &rule.anchor) {
+                    self.queues[index].push(id);
                 }
             }
         }
@@ -415,17 +420,16 @@ impl<'a> Run<'a> {
     }
 }
 
-/// The anchors from which `node` can be seen by `reach`; they are in `lists[0]`.
-fn anchors(view: View<'_>, node: Node, reach: &Reach, lists: &mut [Vec<u32>; 2]) {
-    lists[0].clear();
-    let one = reach.path.iter().try_fold(node.id(), |id, hop| match hop {
-        Hop::One(via) => Some(view.follow(*via, id)),
-        Hop::Many(_) => None,
-    });
-    if let Some(id) = one {
-        lists[0].push(id);
+/// Adds the anchors from which `node` can be seen by `reach` to `found`.
+fn anchors(view: View<'_>, node: Node, reach: &Reach, lists: &mut [Vec<u32>; 2], found: &mut Vec<u32>) {
+    if reach.single {
+        found.push(reach.path.iter().fold(node.id(), |id, hop| match hop {
+            Hop::One(via) => view.follow(*via, id),
+            Hop::Many(_) => id,
+        }));
         return;
     }
+    lists[0].clear();
     lists[0].push(node.id());
     let mut domain = node.domain();
     for (hop, next) in reach.path.iter().zip(&reach.domains) {
@@ -437,6 +441,7 @@ fn anchors(view: View<'_>, node: Node, reach: &Reach, lists: &mut [Vec<u32>; 2])
         domain = *next;
         lists.swap(0, 1);
     }
+    found.extend_from_slice(&lists[0]);
 }
 
 /// Why a search for a match ended early.

@@ -13,18 +13,57 @@ use std::collections::BTreeSet;
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Debug)]
 pub struct Symbol(pub(crate) u32);
 
+/// Values of up to 64 neighbouring ids: neighbours in the mesh tend to have near ids, so that a search round a face
+/// looks at one place in memory, and learns without a look at the values that an element has none.
+#[derive(Clone, Default, Debug)]
+struct Block {
+    /// Bit `i`: the id with remainder `i` has a value.
+    present: u64,
+    /// The values, by ascending id.
+    values: SmallVec<[Value; 1]>,
+}
+
+impl Block {
+    /// Place of `id` among the values, and whether it has one.
+    fn place(&self, id: u32) -> (usize, bool) {
+        let below = self.present & ((1 << (id % 64)) - 1);
+        (below.count_ones() as usize, self.present >> (id % 64) & 1 == 1)
+    }
+
+    fn ids(&self, number: u32) -> impl Iterator<Item = u32> + use<> {
+        let present = self.present;
+        (0..64).filter(move |i| present >> i & 1 == 1).map(move |i| 64 * number + i)
+    }
+}
+
 #[derive(Clone, Default, Debug)]
 pub(crate) struct Column {
-    pub(crate) values: FxHashMap<u32, Value>,
+    blocks: FxHashMap<u32, Block>,
     index: FxHashMap<Key, BTreeSet<u32>>,
 }
 
 impl Column {
+    fn get(&self, id: u32) -> Option<&Value> {
+        let block = self.blocks.get(&(id / 64))?;
+        let (place, present) = block.place(id);
+        if present { block.values.get(place) } else { None }
+    }
+
     fn set(&mut self, id: u32, value: Option<Value>) -> Option<Value> {
         let key = value.as_ref().map(Key::from);
         let old = match value {
-            Some(value) => self.values.insert(id, value),
-            None => self.values.remove(&id),
+            Some(value) => {
+                let block = self.blocks.entry(id / 64).or_default();
+                let (place, present) = block.place(id);
+                if present {
+                    Some(std::mem::replace(&mut block.values[place], value))
+                } else {
+                    block.present |= 1 << (id % 64);
+                    block.values.insert(place, value);
+                    None
+                }
+            }
+            None => self.remove(id),
         };
         if let Some(old) = &old
             && let Some(ids) = self.index.get_mut(&Key::from(old))
@@ -35,6 +74,25 @@ impl Column {
             self.index.entry(key).or_default().insert(id);
         }
         old
+    }
+
+    fn remove(&mut self, id: u32) -> Option<Value> {
+        let block = self.blocks.get_mut(&(id / 64))?;
+        let (place, present) = block.place(id);
+        if !present {
+            return None;
+        }
+        block.present &= !(1 << (id % 64));
+        let old = block.values.remove(place);
+        if block.values.is_empty() {
+            self.blocks.remove(&(id / 64));
+        }
+        Some(old)
+    }
+
+    /// Ids that have a value, in no order.
+    fn ids(&self) -> impl Iterator<Item = u32> {
+        self.blocks.iter().flat_map(|(number, block)| block.ids(*number))
     }
 }
 
@@ -71,7 +129,7 @@ impl Attributes {
     }
 
     pub(crate) fn get(&self, node: Node, name: Symbol) -> Option<&Value> {
-        self.columns.get(&(node.domain(), name))?.values.get(&node.id())
+        self.columns.get(&(node.domain(), name))?.get(node.id())
     }
 
     pub(crate) fn set(&mut self, node: Node, name: Symbol, value: Option<Value>) -> Option<Value> {
@@ -95,12 +153,7 @@ impl Attributes {
 
     /// Ids that carry the attribute with any value, ascending.
     pub(crate) fn with_name(&self, domain: Domain, name: Symbol) -> Vec<u32> {
-        let mut ids: Vec<u32> = self
-            .columns
-            .get(&(domain, name))
-            .into_iter()
-            .flat_map(|column| column.values.keys().copied())
-            .collect();
+        let mut ids: Vec<u32> = self.columns.get(&(domain, name)).into_iter().flat_map(Column::ids).collect();
         ids.sort_unstable();
         ids
     }
@@ -110,9 +163,7 @@ impl Attributes {
         let mut names: Vec<Symbol> = self
             .columns
             .iter()
-            .filter(|((domain, _), column)| {
-                *domain == node.domain() && column.values.contains_key(&node.id())
-            })
+            .filter(|((domain, _), column)| *domain == node.domain() && column.get(node.id()).is_some())
             .map(|((_, name), _)| *name)
             .collect();
         names.sort_unstable();
@@ -187,9 +238,11 @@ impl Attributes {
     pub(crate) fn remap(&mut self, map: impl Fn(Node) -> Option<Node>) {
         for ((domain, _), column) in &mut self.columns {
             let old = std::mem::take(column);
-            for (id, value) in old.values {
-                if let Some(node) = map(Node::new(*domain, id)) {
-                    column.set(node.id(), Some(value));
+            for (number, block) in old.blocks {
+                for (id, value) in block.ids(number).zip(block.values) {
+                    if let Some(node) = map(Node::new(*domain, id)) {
+                        column.set(node.id(), Some(value));
+                    }
                 }
             }
         }

@@ -271,14 +271,11 @@ fn fit_rim(
     job: &Job,
 ) -> Result<u32, Cancelled> {
     let masks: Vec<LimitMask> = rim.iter().map(|&v| limit_mask(mesh, v)).collect();
-    let unknowns: FxHashMap<VertexId, u32> =
-        rim.iter().enumerate().map(|(i, &v)| (v, i as u32)).collect();
+    let unknowns: FxHashMap<VertexId, u32> = rim.iter().enumerate().map(|(i, &v)| (v, i as u32)).collect();
     let rows = masks.iter().map(|mask| {
         mask.iter().filter_map(|(v, weight)| Some((*unknowns.get(v)?, *weight))).collect::<Row>()
     });
-    let system = (method == Method::Solve)
-        .then(|| LeastSquares::new(rows.collect(), rim.len()))
-        .flatten();
+    let system = (method == Method::Solve).then(|| LeastSquares::new(rows.collect(), rim.len())).flatten();
     let limit = if method == Method::Loop { LOOP_STEPS } else { SOLVE_STEPS };
     for step in 0..limit {
         job.step("fit", 0.0)?;

@@ -49,15 +49,21 @@ impl DartMasks {
                 faces: (0..faces).map(|i| scale * (at(i) + at(i + 1))).collect(),
             }
         };
-        Self {
-            position: converged(smooth, 1.0, &once),
-            along: {
-                let start = wave(&f64::cos);
-                let length = size(&start);
-                converged(start, length, &once)
-            },
-            across: wave(&f64::sin),
-        }
+        let position = converged(smooth, &once);
+        // Without the shares of the position's and of odd modes that rounding brings in, which would outgrow the rest.
+        let without_others = |mask: &RingMask| {
+            let mut next = once(mask);
+            make_even(&mut next);
+            let sum = next.vertex + next.edges.iter().chain(&next.faces).sum::<f64>();
+            next.vertex -= sum * position.vertex;
+            let weights = position.edges.iter().chain(&position.faces);
+            for (weight, &share) in next.edges.iter_mut().chain(&mut next.faces).zip(weights) {
+                *weight -= sum * share;
+            }
+            next
+        };
+        let along = converged(wave(&f64::cos), &without_others);
+        Self { along, across: wave(&f64::sin), position }
     }
 }
 
@@ -72,8 +78,22 @@ fn size(mask: &RingMask) -> f64 {
     mask.vertex.abs() + mask.edges.iter().chain(&mask.faces).map(|w| w.abs()).sum::<f64>()
 }
 
-/// Applies `once` until the mask, kept at sum of amounts `length`, stays.
-fn converged(mut mask: RingMask, length: f64, once: &dyn Fn(&RingMask) -> RingMask) -> RingMask {
+/// Makes a mask the same on both sides of spoke 0.
+fn make_even(mask: &mut RingMask) {
+    let count = mask.edges.len();
+    for i in 1..count.div_ceil(2) {
+        let mean = 0.5 * (mask.edges[i] + mask.edges[count - i]);
+        (mask.edges[i], mask.edges[count - i]) = (mean, mean);
+    }
+    for i in 0..count / 2 {
+        let mean = 0.5 * (mask.faces[i] + mask.faces[count - 1 - i]);
+        (mask.faces[i], mask.faces[count - 1 - i]) = (mean, mean);
+    }
+}
+
+/// Applies `once` until the mask, whose sum of amounts is kept, stays.
+fn converged(mut mask: RingMask, once: &dyn Fn(&RingMask) -> RingMask) -> RingMask {
+    let length = size(&mask);
     for _ in 0..MOST {
         let mut next = once(&mask);
         let scale = length / size(&next);

@@ -71,13 +71,15 @@ impl LevelSharpness {
         }
         let rank = |v| ids.vertices.binary_search(&v).map_or(u32::MAX, |rank| rank as u32);
         let interior = |h| !mesh.face(h).is_boundary() && !mesh.face(h.mate()).is_boundary();
-        let edges = ids.edges.iter().enumerate().filter(|&(_, &h)| interior(h) && mesh.edge_sharpness(h) > 0.0);
+        let edges =
+            ids.edges.iter().enumerate().filter(|&(_, &h)| interior(h) && mesh.edge_sharpness(h) > 0.0);
         let edges = edges.map(|(edge, &h)| SharpEdge {
             edge: edge as u32,
             ends: [rank(mesh.source(h)), rank(mesh.target(h))],
             sharpness: edge_sharpness(mesh, h),
         });
-        let vertices = ids.vertices.iter().enumerate().map(|(rank, &v)| (rank as u32, vertex_sharpness(mesh, v)));
+        let vertices =
+            ids.vertices.iter().enumerate().map(|(rank, &v)| (rank as u32, vertex_sharpness(mesh, v)));
         Self { edges: edges.collect(), vertices: vertices.filter(|entry| entry.1 > 0.0).collect() }
     }
 
@@ -85,13 +87,15 @@ impl LevelSharpness {
     fn spokes(&self, level: &Level) -> Vec<(u32, SmallVec<[Spoke; 4]>)> {
         let ends = self.edges.iter().zip(0..).flat_map(|(edge, index)| {
             [0, 1].map(|end: usize| {
-                let spoke = Spoke { far: edge.ends[1 - end], sharpness: edge.sharpness, edge: Some((index, end)) };
+                let spoke =
+                    Spoke { far: edge.ends[1 - end], sharpness: edge.sharpness, edge: Some((index, end)) };
                 (edge.ends[end], spoke)
             })
         });
         let mut ends: Vec<(u32, Spoke)> = ends.collect();
         ends.sort_by_key(|entry| entry.0);
-        let mut vertices: Vec<u32> = ends.iter().map(|entry| entry.0).chain(self.vertices.iter().map(|v| v.0)).collect();
+        let mut vertices: Vec<u32> =
+            ends.iter().map(|entry| entry.0).chain(self.vertices.iter().map(|v| v.0)).collect();
         vertices.sort_unstable();
         vertices.dedup();
         let mut rest = ends.as_slice();
@@ -175,10 +179,12 @@ impl LevelSharpness {
             let mut sorted = own.clone();
             sorted.sort_unstable_by_key(|spoke| spoke.far);
             let to = |far: u32| sorted.binary_search_by_key(&far, |spoke| spoke.far).map(|i| sorted[i]);
-            let values: Values = ends.iter().map(|&far| to(far).map_or(0.0, |spoke| spoke.sharpness)).collect();
+            let values: Values =
+                ends.iter().map(|&far| to(far).map_or(0.0, |spoke| spoke.sharpness)).collect();
             let far = ends.iter().map(|&far| {
                 let there = index(far).map(|i| spokes[i].1.as_slice()).unwrap_or_default();
-                let others = there.iter().filter(|spoke| spoke.far != *vertex && is_semi_sharp(spoke.sharpness));
+                let others =
+                    there.iter().filter(|spoke| spoke.far != *vertex && is_semi_sharp(spoke.sharpness));
                 others.map(|spoke| spoke.sharpness).collect()
             });
             let far = if creasing == Creasing::Chaikin { far.collect() } else { SmallVec::new() };
@@ -188,7 +194,10 @@ impl LevelSharpness {
             let position = |v: u32| positions[v as usize];
             let edges = ends.iter().zip(&mask.edges).map(|(&v, &w)| w * position(v));
             let faces = fan.iter().zip(&mask.faces).map(|(quad, &w)| w * position(quad[1]));
-            limits.push((*vertex, mask.vertex * position(*vertex) + edges.sum::<DVec3>() + faces.sum::<DVec3>()));
+            limits.push((
+                *vertex,
+                mask.vertex * position(*vertex) + edges.sum::<DVec3>() + faces.sum::<DVec3>(),
+            ));
         }
         limits
     }

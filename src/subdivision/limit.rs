@@ -1,8 +1,8 @@
 //! Points of the limit surface at the vertices of a control mesh.
 
 use super::mask::{RingMask, position_mask, sharp_masks, tangent_masks};
-use super::sharpness::all_smooth;
 use super::ring::{LargeFaces, Ring, RingShape};
+use super::sharpness::all_smooth;
 use crate::mesh::{HalfEdgeId, Mesh, VertexId};
 use glam::DVec3;
 use rustc_hash::FxHashMap;

@@ -61,8 +61,7 @@ impl SharpMasks {
             [crease] => {
                 let masks = DartMasks::new(shape.faces);
                 let step = dart_step(shape.faces, crease);
-                let turned =
-                    |mask: &RingMask| step.carry_back(shape, &embedded(shape, mask, crease));
+                let turned = |mask: &RingMask| step.carry_back(shape, &embedded(shape, mask, crease));
                 Self {
                     position: turned(&masks.position),
                     tangents: Some([turned(&masks.along), turned(&masks.across)]),
@@ -77,11 +76,8 @@ impl SharpMasks {
 fn sector(shape: RingShape, sharp: &[usize]) -> Option<(usize, usize)> {
     let (&least, &greatest) = (sharp.first()?, sharp.last()?);
     let count = shape.edges();
-    let (first, last) = if least > 0 {
-        (greatest, least)
-    } else {
-        (least, sharp.get(1).copied().unwrap_or(least))
-    };
+    let (first, last) =
+        if least > 0 { (greatest, least) } else { (least, sharp.get(1).copied().unwrap_or(least)) };
     let faces = (last + count - first) % count;
     Some((first, if faces == 0 { count } else { faces }))
 }

@@ -15,6 +15,10 @@ const BESIDE: f64 = 1.0 / 4096.0;
 
 /// One patch; see the [module](self).
 #[derive(Clone, Debug)]
+#[expect(
+    clippy::large_enum_variant,
+    reason = "most are regular; boxing them would cost each face an allocation"
+)]
 pub(crate) enum Patch {
     /// One bicubic piece.
     Regular(Bicubic),
@@ -44,7 +48,7 @@ pub(crate) fn to_quarter(u: f64, v: f64) -> (usize, f64, f64) {
 
 impl Jet {
     /// A jet in the parameters of quarter `quarter` as one in the patch's.
-    pub(crate) fn from_quarter(self, quarter: usize) -> Self {
+    pub(crate) fn in_patch(self, quarter: usize) -> Self {
         let jet = self.scaled(2.0);
         let (du, dv) = match quarter {
             0 => (jet.du, jet.dv),
@@ -148,7 +152,7 @@ impl Patch {
             }
         };
         for &quarter in quarters.iter().rev() {
-            found.jet = found.jet.from_quarter(quarter);
+            found.jet = found.jet.in_patch(quarter);
         }
         Some(found)
     }

@@ -108,10 +108,14 @@ impl Bicubic {
         [pick(&left, 0), pick(&right, 0), pick(&left, 1), pick(&right, 1)]
     }
 
+    /// The control points in one array, u running fastest.
+    pub(crate) fn net(&self) -> [DVec3; 16] {
+        std::array::from_fn(|k| self.points[k / 4][k % 4])
+    }
+
     /// The smallest axis-parallel box round the control points, which holds the patch.
     pub(crate) fn bounds(&self) -> (DVec3, DVec3) {
         let flat = self.points.as_flattened();
-        flat.iter()
-            .fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), &p| (low.min(p), high.max(p)))
+        flat.iter().fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), &p| (low.min(p), high.max(p)))
     }
 }

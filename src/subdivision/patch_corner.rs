@@ -129,17 +129,7 @@ impl Corner {
         }
     }
 
-    /// True when the quad is an ordinary bicubic patch.
-    pub(crate) fn is_regular(&self) -> bool {
-        let faces = self.diagonals.len();
-        match self.tip {
-            Tip::Moving => faces == if self.closed { 4 } else { 2 },
-            Tip::Fixed => !self.closed && faces == 1,
-            Tip::Dart(_) => false,
-        }
-    }
-
-    /// The 4 x 4 grid round the quad. The point diagonally behind the vertex is meaningful in regular corners only.
+    /// The 4 x 4 grid round the quad. The point diagonally behind the vertex has no meaning.
     /// Beside the boundary the outer row continues the two inside it in a straight line, which gives exactly the
     /// edge-only boundary.
     pub(crate) fn grid(&self) -> Grid {
@@ -185,7 +175,9 @@ impl Corner {
             let before = if j > 0 { Some(j - 1) } else { self.closed.then(|| faces - 1) };
             let spoke = &mut self.spokes[j];
             *spoke = match (before, j < faces) {
-                (Some(before), true) if crease != Some(j) => (old + *spoke + scratch[before] + scratch[j]) * 0.25,
+                (Some(before), true) if crease != Some(j) => {
+                    (old + *spoke + scratch[before] + scratch[j]) * 0.25
+                }
                 _ => (old + *spoke) * 0.5,
             };
         }
@@ -196,8 +188,7 @@ impl Corner {
         fine[1][0] = self.spoke(2).unwrap_or(self.vertex);
         fine[0][1] = self.spoke(-1).unwrap_or(self.vertex);
         extend(&mut fine, self.boundary_u(), self.boundary_v());
-        self.outer =
-            [fine[0][3], fine[1][3], fine[2][3], fine[3][3], fine[3][2], fine[3][1], fine[3][0]];
+        self.outer = [fine[0][3], fine[1][3], fine[2][3], fine[3][3], fine[3][2], fine[3][1], fine[3][0]];
         let window = |i0: usize, j0: usize| -> Grid {
             std::array::from_fn(|j| std::array::from_fn(|i| fine[j + j0][i + i0]))
         };

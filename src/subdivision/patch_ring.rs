@@ -180,7 +180,9 @@ impl Fan {
     fn edge_point(&self, creasing: Creasing, j: usize) -> DVec3 {
         let middle = (self.vertex + self.spokes[j]) * 0.5;
         let before = if j > 0 { Some(j - 1) } else { self.closed.then(|| self.faces.len() - 1) };
-        let Some((a, b)) = before.and_then(|b| self.faces.get(b)).zip(self.faces.get(j)) else { return middle };
+        let Some((a, b)) = before.and_then(|b| self.faces.get(b)).zip(self.faces.get(j)) else {
+            return middle;
+        };
         let smooth = (self.vertex + self.spokes[j] + a.point + b.point) * 0.25;
         match &self.around {
             Some(around) => {
@@ -198,19 +200,19 @@ impl Fan {
 
     /// Sharpness of the half at this vertex of spoke `home + offset`, and of the semi-sharp ones of the others.
     fn half_at(&self, creasing: Creasing, offset: isize) -> (f32, Values) {
-        let (Some(around), Some(j)) = (&self.around, self.spoke_at(offset)) else { return (0.0, Values::new()) };
+        let (Some(around), Some(j)) = (&self.around, self.spoke_at(offset)) else {
+            return (0.0, Values::new());
+        };
         let halves = around.halves(creasing);
         let others = halves.iter().enumerate().filter(|&(i, &s)| i != j && is_semi_sharp(s)).map(|(_, &s)| s);
         (halves[j], others.collect())
     }
 
-
     /// The fan of the same vertex after one step.
     fn refined(&self, creasing: Creasing) -> Self {
         let spokes = (0..self.spokes.len()).map(|j| self.edge_point(creasing, j)).collect();
         let diagonals: Points = self.faces.iter().map(|face| face.point).collect();
-        let mut fan =
-            Self::of_quads(self.vertex_point(creasing), spokes, &diagonals, self.home, self.closed);
+        let mut fan = Self::of_quads(self.vertex_point(creasing), spokes, &diagonals, self.home, self.closed);
         fan.around = self.around.as_ref().map(|around| Box::new(around.refined(creasing)));
         fan
     }
@@ -325,7 +327,8 @@ impl Ring {
         for (fan, [v, next, prev]) in self.fans.iter().zip(CORNERS) {
             let behind = |a: usize, b: usize| 2 * a - b;
             grid[v.1][v.0] = fan.vertex;
-            let (bu, bv) = ((behind(v.0, next.0), behind(v.1, next.1)), (behind(v.0, prev.0), behind(v.1, prev.1)));
+            let (bu, bv) =
+                ((behind(v.0, next.0), behind(v.1, next.1)), (behind(v.0, prev.0), behind(v.1, prev.1)));
             let sum = |a: (usize, usize), b: (usize, usize)| (a.0 + b.0 - v.0, a.1 + b.1 - v.1);
             let entries = [
                 (bu, fan.spoke(2)),
@@ -383,7 +386,12 @@ impl Ring {
             Some(mate) => Fan::of_quads(
                 edge(corner),
                 smallvec![self.centre, vertex(corner), mate.point, vertex(next)],
-                &[edge(prev), fan.edge_point_at(creasing, -1), fan_next.edge_point_at(creasing, 2), edge(after)],
+                &[
+                    edge(prev),
+                    fan.edge_point_at(creasing, -1),
+                    fan_next.edge_point_at(creasing, 2),
+                    edge(after),
+                ],
                 0,
                 true,
             ),
@@ -399,7 +407,12 @@ impl Ring {
             Some(mate) => Fan::of_quads(
                 edge(prev),
                 smallvec![vertex(corner), self.centre, vertex(prev), mate.point],
-                &[edge(corner), edge(before), fan_prev.edge_point_at(creasing, -1), fan.edge_point_at(creasing, 2)],
+                &[
+                    edge(corner),
+                    edge(before),
+                    fan_prev.edge_point_at(creasing, -1),
+                    fan.edge_point_at(creasing, 2),
+                ],
                 0,
                 true,
             ),
@@ -420,7 +433,8 @@ impl Ring {
         let spokes = (0..k).map(|j| edge(wrap(prev + j))).collect();
         let diagonals: Points = (0..k).map(|j| vertex(wrap(corner + j))).collect();
         let at_centre = Fan::of_quads(self.centre, spokes, &diagonals, 0, true);
-        let fans: SmallVec<[Fan; 4]> = smallvec![fan.refined(creasing), at_next_edge, at_centre, at_prev_edge];
+        let fans: SmallVec<[Fan; 4]> =
+            smallvec![fan.refined(creasing), at_next_edge, at_centre, at_prev_edge];
         let centre = fans[0].face(0).map_or(fans[0].vertex, |face| face.point);
         Self { fans, centre, creasing }
     }

@@ -2,7 +2,8 @@
 //!
 //! Sharpness is an f32 from 0 (smooth) to 10 (infinite), as in OpenSubdiv, whose arithmetic this is. Boundary edges
 //! are infinitely sharp, and so are, under the rule "edge and corner", boundary vertices of a single face. Where a
-//! rule changes from one level to the next, the masks of both are blended by the sharpness that is left.
+//! rule changes from one level to the next, the masks of both are blended by the sharpness that is left. Sums of
+//! sharpness alone are made in f64, where they do not depend on the order: the faces round a vertex agree.
 
 use crate::mesh::{BoundaryRule, Creasing, FaceId, HalfEdgeId, Mesh, VertexId};
 use smallvec::SmallVec;
@@ -31,25 +32,28 @@ pub(super) fn half(creasing: Creasing, sharpness: f32, others: impl Iterator<Ite
     if creasing == Creasing::Uniform || !is_semi_sharp(sharpness) {
         return decremented(sharpness);
     }
-    let (mut sum, mut count) = (0.0f32, 0);
-    for other in others.filter(|&other| is_semi_sharp(other)) {
-        sum += other;
-        count += 1;
+    let others = others.filter(|&other| is_semi_sharp(other));
+    let (sum, count) = others.fold((0.0, 0), |(sum, count), other| (sum + f64::from(other), count + 1));
+    chaikin(sharpness, sum, count)
+}
+
+/// Chaikin's rule for an edge that meets `count` other semi-sharp edges with the sum `sum`.
+fn chaikin(sharpness: f32, sum: f64, count: usize) -> f32 {
+    if count == 0 {
+        return decremented(sharpness);
     }
-    let averaged = if count > 0 { 0.75 * sharpness + 0.25 * (sum / count as f32) } else { sharpness };
-    (averaged - 1.0).max(0.0)
+    (0.75 * sharpness + 0.25 * (sum as f32 / count as f32) - 1.0).max(0.0)
 }
 
 /// Sharpness of the halves next to a vertex of all edges there.
 pub(super) fn halves(creasing: Creasing, around: &[f32]) -> Values {
     let semi_sharp = around.iter().copied().filter(|&s| is_semi_sharp(s));
-    let (sum, count) = semi_sharp.fold((0.0f32, 0), |(sum, count), s| (sum + s, count + 1));
+    let (sum, count) = semi_sharp.fold((0.0, 0), |(sum, count), s| (sum + f64::from(s), count + 1));
     let half = |&sharpness: &f32| {
-        if creasing == Creasing::Uniform || count < 2 || !is_semi_sharp(sharpness) {
+        if creasing == Creasing::Uniform || !is_semi_sharp(sharpness) {
             return decremented(sharpness);
         }
-        let others = (sum - sharpness) / (count - 1) as f32;
-        (0.75 * sharpness + 0.25 * others - 1.0).max(0.0)
+        chaikin(sharpness, sum - f64::from(sharpness), count - 1)
     };
     around.iter().map(half).collect()
 }
@@ -126,12 +130,9 @@ impl VertexBlend {
 fn parent_share(vertex: f32, around: &[f32], child_vertex: f32, child_around: &[f32]) -> f64 {
     let pairs = std::iter::once((vertex, child_vertex))
         .chain(around.iter().copied().zip(child_around.iter().copied()));
-    let (mut sum, mut count) = (0.0f32, 0);
-    for (parent, _) in pairs.filter(|&(parent, child)| parent > 0.0 && child <= 0.0) {
-        sum += parent;
-        count += 1;
-    }
-    if count == 0 { 0.0 } else { f64::from((sum / count as f32).min(1.0)) }
+    let falling = pairs.filter(|&(parent, child)| parent > 0.0 && child <= 0.0);
+    let (sum, count) = falling.fold((0.0, 0), |(sum, count), (s, _)| (sum + f64::from(s), count + 1));
+    if count == 0 { 0.0 } else { f64::from((sum as f32 / count as f32).min(1.0)) }
 }
 
 /// The share of the crease's mask in an edge point; the rest is the smooth mask. `ends` is the sharpness of the two
@@ -183,7 +184,8 @@ impl Around {
             return None;
         }
         let vertex = vertex_sharpness(mesh, v);
-        let sharp = vertex > 0.0 || edges.iter().any(|&h| mesh.edge_sharpness(h) > 0.0 && !is_boundary_edge(mesh, h));
+        let sharp =
+            vertex > 0.0 || edges.iter().any(|&h| mesh.edge_sharpness(h) > 0.0 && !is_boundary_edge(mesh, h));
         if !sharp {
             return None;
         }

@@ -1,20 +1,21 @@
 //! The closest point: branch and bound over the pieces, Newton's method where it is certain.
 
-use super::convexity::Convexity;
+use super::convexity::View;
 use super::freeze::{CornerEntry, Domain};
-use super::tree::{Content, Node};
+use super::minimise::minimise;
+use super::tree::Content;
 use super::{Bicubic, LimitSurface};
-use crate::subdivision::patch_bicubic::Jet;
 use crate::mesh::FaceId;
 use crate::subdivision::patch_corner::Points;
 use glam::DVec3;
-use smallvec::SmallVec;
+use std::cmp::{Ordering, Reverse};
+use std::collections::BinaryHeap;
 
 /// How often a piece is halved at most before Newton's method is trusted without proof.
 const MAX_HALVINGS: u32 = 8;
 /// Parts of pieces looked at before halving ends: bounds the time at centres of curvature, where everything is
 /// equally close.
-const MAX_PARTS: u32 = 4000;
+const MAX_PARTS: u32 = 2000;
 /// Refinements beside an extraordinary vertex; see the same limit of evaluation.
 const MAX_DEPTH: u32 = 128;
 
@@ -147,6 +148,33 @@ impl LimitSurface {
     }
 }
 
+/// A distance as a key of the queue.
+#[derive(Clone, Copy, PartialEq)]
+struct Nearness(f64);
+
+impl Eq for Nearness {}
+
+impl Ord for Nearness {
+    fn cmp(&self, other: &Self) -> Ordering {
+        self.0.total_cmp(&other.0)
+    }
+}
+
+impl PartialOrd for Nearness {
+    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
+/// What the queue holds: items come before nodes that may be as near.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+enum Goal {
+    /// A piece or, numbered after the pieces, an extraordinary corner.
+    Item(u32),
+    /// A node of the tree.
+    Node(u32),
+}
+
 fn box_distance(low: DVec3, high: DVec3, point: DVec3) -> f64 {
     (low - point).max(point - high).max(DVec3::ZERO).length()
 }
@@ -163,32 +191,40 @@ impl Search<'_> {
         at_least > self.best.min(self.bound) + self.rounding()
     }
 
+    /// Visits the pieces, those first that may be nearest.
     fn run(&mut self) {
         let surface = self.surface;
-        let distance = |node: &Node, point: DVec3| box_distance(node.low, node.high, point);
-        let mut open: SmallVec<[(f64, u32); 64]> = SmallVec::new();
+        let node_entry = |index: u32, point: DVec3| {
+            let node = surface.tree.node(index);
+            Reverse((Nearness(box_distance(node.low, node.high, point)), Goal::Node(index)))
+        };
+        let mut open = BinaryHeap::with_capacity(64);
         if surface.tree.bounds().is_some() {
-            open.push((distance(surface.tree.node(0), self.point), 0));
+            open.push(node_entry(0, self.point));
         }
-        while let Some((at_least, index)) = open.pop() {
+        while let Some(Reverse((Nearness(at_least), goal))) = open.pop() {
             if self.hopeless(at_least) {
-                continue;
+                break;
             }
-            match surface.tree.content(index) {
-                Content::Children(children) => {
-                    let [a, b] = children.map(|c| (distance(surface.tree.node(c), self.point), c));
-                    let (near, far) = if b.0 < a.0 { (b, a) } else { (a, b) };
-                    open.push(far);
-                    open.push(near);
-                }
-                Content::Leaf(items) => {
-                    for &item in items {
-                        match surface.pieces.get(item as usize) {
-                            Some(piece) => self.visit(piece.bicubic, DVec3::ZERO, piece.domain),
-                            None => self.visit_corner(&surface.corners[item as usize - surface.pieces.len()]),
-                        }
+            match goal {
+                Goal::Node(index) => match surface.tree.content(index) {
+                    Content::Children(children) => {
+                        open.extend(children.map(|child| node_entry(child, self.point)));
                     }
-                }
+                    Content::Leaf(items) => {
+                        open.extend(items.iter().map(|&item| {
+                            let nearness = match surface.pieces.get(item as usize) {
+                                Some(piece) => View::new(&piece.bicubic, self.point).at_least,
+                                None => at_least,
+                            };
+                            Reverse((Nearness(nearness), Goal::Item(item)))
+                        }));
+                    }
+                },
+                Goal::Item(item) => match surface.pieces.get(item as usize) {
+                    Some(piece) => self.visit(piece.bicubic, DVec3::ZERO, piece.domain),
+                    None => self.visit_corner(&surface.corners[item as usize - surface.pieces.len()]),
+                },
             }
         }
     }
@@ -196,6 +232,9 @@ impl Search<'_> {
     /// Looks at a patch whose points are relative to `origin`.
     fn visit(&mut self, bicubic: Bicubic, origin: DVec3, domain: Domain) {
         let point = self.point - origin;
+        // Minima on the border of a part do not count then, but those on the border of the surface do.
+        let feet_only = self.facing.is_some() && self.surface.places[domain.patch as usize].rims == 0;
+        let facing = self.facing.filter(|f| f.min_cosine >= 0.0).map_or(DVec3::ZERO, |f| f.normal);
         self.stack.clear();
         self.stack.push(Part { bicubic, s: 0.0, t: 0.0, size: 1.0, halvings: 0 });
         while let Some(part) = self.stack.pop() {
@@ -203,17 +242,28 @@ impl Search<'_> {
             if self.hopeless(box_distance(low, high, point)) {
                 continue;
             }
-            let convexity = Convexity::new(&part.bicubic, point);
-            if self.hopeless(convexity.at_least) {
+            let view = View::new(&part.bicubic, point);
+            if self.hopeless(view.at_least) {
+                continue;
+            }
+            let convexity = view.convexity(facing);
+            if !convexity.may_face || feet_only && !convexity.may_have_foot {
                 continue;
             }
             self.parts += 1;
-            if convexity.convex || part.halvings >= MAX_HALVINGS || self.parts > MAX_PARTS {
+            let last = convexity.convex || part.halvings >= MAX_HALVINGS || self.parts > MAX_PARTS;
+            // Newton's method from the middle of a whole piece mostly finds the foot at once; the search that
+            // follows then only has to show that nothing is closer.
+            if last || part.halvings == 0 {
                 let (a, b, jet) = minimise(&part.bicubic, point);
                 let (s, t) = (part.s + part.size * a, part.t + part.size * b);
                 let normal = jet.du.cross(jet.dv);
-                self.offer(jet.position - point, Found { domain, s, t, position: jet.position + origin, normal });
-            } else {
+                self.offer(
+                    jet.position - point,
+                    Found { domain, s, t, position: jet.position + origin, normal },
+                );
+            }
+            if !last && !self.hopeless(view.at_least) {
                 self.split(&part, point);
             }
         }
@@ -313,8 +363,13 @@ impl Search<'_> {
                 radius = radius.max(p.length_squared());
             }
             let slack = if is_foot { 2.0 * self.rounding() } else { 0.0 };
+            // The surface curves less towards the point than a sphere round it, with room to spare; as the rings
+            // beside a vertex are similar from level to level, nothing closer than the vertex is left.
+            let curves_little =
+                || corner.control_points().all(|p| 2.0 * p.dot(way) >= -0.25 * p.length_squared());
             if self.hopeless(box_distance(low, high, self.point))
                 || self.hopeless(ahead + slack)
+                || is_foot && curves_little()
                 || radius.sqrt() <= 0.05 * self.surface.tolerance
             {
                 return;
@@ -326,85 +381,4 @@ impl Search<'_> {
             domain = domain.inner();
         }
     }
-}
-
-/// The minimum of the distance over the patch, by Newton's method that keeps to [0, 1]^2 (projected, with halved
-/// steps where the distance would grow; Gauss-Newton where the Hessian is not positive).
-fn minimise(bicubic: &Bicubic, point: DVec3) -> (f64, f64, Jet) {
-    let mut at = [0.5, 0.5];
-    let mut jet = bicubic.jet(at[0], at[1]);
-    for _ in 0..32 {
-        let way = jet.position - point;
-        let gradient = [way.dot(jet.du), way.dot(jet.dv)];
-        // A parameter at its end stays there while the distance falls outwards.
-        let free = [0, 1].map(|i| !(at[i] <= 0.0 && gradient[i] >= 0.0 || at[i] >= 1.0 && gradient[i] <= 0.0));
-        let Some((mut step, mut exact)) = newton_step(&jet, way, gradient, free) else {
-            break;
-        };
-        // A parameter that would leave at once waits while the other one moves.
-        let leaves = [0, 1].map(|i| at[i] <= 0.0 && step[i] < 0.0 || at[i] >= 1.0 && step[i] > 0.0);
-        if leaves[0] || leaves[1] {
-            let staying = [free[0] && !leaves[0], free[1] && !leaves[1]];
-            match newton_step(&jet, way, gradient, staying) {
-                Some(other) => (step, exact) = (other.0, false),
-                None => break,
-            }
-        }
-        // Shorten the step so that it ends on the border that it crosses first.
-        let mut fraction = 1.0f64;
-        let mut border = None;
-        for i in 0..2 {
-            let end = if step[i] < 0.0 { -at[i] } else { 1.0 - at[i] };
-            if step[i].abs() * fraction > end.abs() {
-                fraction = end / step[i];
-                border = Some((i, at[i] + end));
-            }
-        }
-        step = step.map(|x| x * fraction);
-        let before = way.length_squared();
-        // A short step of Newton's needs no check, which rounding would make fail.
-        let trusted = exact && step[0].abs().max(step[1].abs()) < 1e-4;
-        let mut moved = false;
-        for halved in 0..10 {
-            let mut next = [0, 1].map(|i: usize| (at[i] + step[i]).clamp(0.0, 1.0));
-            if let (0, Some((i, end))) = (halved, border) {
-                next[i] = end;
-            }
-            let next_jet = bicubic.jet(next[0], next[1]);
-            if trusted || next_jet.position.distance_squared(point) <= before {
-                (at, jet, moved) = (next, next_jet, true);
-                break;
-            }
-            step = step.map(|x| 0.5 * x);
-        }
-        // Newton's method squares the error: after a step of 1e-8 nothing is left to gain.
-        let length = step[0].abs().max(step[1].abs());
-        if !moved || border.is_none() && length < if exact { 1e-8 } else { 1e-15 } {
-            break;
-        }
-    }
-    (at[0], at[1], jet)
-}
-
-/// The step of the free parameters, and whether it is Newton's; `None` when none is free or nothing can be solved.
-fn newton_step(jet: &Jet, way: DVec3, gradient: [f64; 2], free: [bool; 2]) -> Option<([f64; 2], bool)> {
-    let first = [jet.du.length_squared(), jet.du.dot(jet.dv), jet.dv.length_squared()];
-    let full = [first[0] + way.dot(jet.duu), first[1] + way.dot(jet.duv), first[2] + way.dot(jet.dvv)];
-    let determinant = |h: &[f64; 3]| h[0] * h[2] - h[1] * h[1];
-    let exact = match free {
-        [false, false] => return None,
-        [true, false] => full[0] > 0.0,
-        [false, true] => full[2] > 0.0,
-        [true, true] => full[0] > 0.0 && determinant(&full) > 0.0,
-    };
-    let h = if exact { full } else { first };
-    let step = match free {
-        [true, true] => {
-            let d = determinant(&h);
-            [(h[1] * gradient[1] - h[2] * gradient[0]) / d, (h[1] * gradient[0] - h[0] * gradient[1]) / d]
-        }
-        [true, false] => [-gradient[0] / h[0], 0.0],
-        _ => [0.0, -gradient[1] / h[2]],
-    };
-    (step[0].is_finite() && step[1].is_finite()).then_some((step, exact))
 }

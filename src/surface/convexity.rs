@@ -6,12 +6,25 @@
 use super::Bicubic;
 use glam::DVec3;
 
-/// What bounds say about a patch, seen from a point.
-pub(super) struct Convexity {
+/// A patch seen from a point: the cheap part of the bounds.
+pub(super) struct View {
+    net: [DVec3; 16],
+    /// From the point to the mean of the control points.
+    way: DVec3,
+    /// Largest distance of a control point from their mean.
+    radius: f64,
     /// No point of the patch is closer than this.
     pub(super) at_least: f64,
+}
+
+/// The dearer part of the bounds.
+pub(super) struct Convexity {
     /// Half the squared distance has a positive definite Hessian all over the patch.
     pub(super) convex: bool,
+    /// False when the distance surely rises or falls all over the patch in one of the parameters.
+    pub(super) may_have_foot: bool,
+    /// False when all normals point away from the direction asked for.
+    pub(super) may_face: bool,
 }
 
 /// Mean of vectors, and the largest distance of any of them from it.
@@ -31,36 +44,44 @@ fn products<const N: usize>(vectors: &[DVec3; N], w: DVec3) -> (f64, f64, f64) {
     (low, high, length.sqrt())
 }
 
-impl Convexity {
+impl View {
     pub(super) fn new(bicubic: &Bicubic, point: DVec3) -> Self {
-        let p = &bicubic.points;
-        let net: &[DVec3; 16] = &std::array::from_fn(|k| p[k / 4][k % 4]);
-        let (middle, radius) = spread(net);
-        let w = middle - point;
-        let direction = w.normalize_or_zero();
-        let at_least = net.iter().map(|&q| (q - point).dot(direction)).fold(f64::INFINITY, f64::min);
+        let net = bicubic.net();
+        let (middle, radius) = spread(&net);
+        let way = middle - point;
+        let direction = way.normalize_or_zero();
+        let nearest = net.iter().map(|&q| q.dot(direction)).fold(f64::INFINITY, f64::min);
+        Self { net, way, radius, at_least: nearest - point.dot(direction) }
+    }
 
-        // Control vectors of the derivatives; the factors 3 and 6 of the derivative are left out together with their
-        // squares: uu and vv carry 2/3 of the square of the first derivatives' factor.
-        let du: [DVec3; 12] = std::array::from_fn(|k| p[k / 3][k % 3 + 1] - p[k / 3][k % 3]);
-        let dv: [DVec3; 12] = std::array::from_fn(|k| p[k / 4 + 1][k % 4] - p[k / 4][k % 4]);
+    /// Bounds on the derivatives; `facing` is the direction that normals should point to, or zero.
+    pub(super) fn convexity(&self, facing: DVec3) -> Convexity {
+        let (p, w, radius) = (&self.net, self.way, self.radius);
+        // Control vectors of the derivatives; their factors 3 and 6 are left out together with the square of 3, so
+        // that 2/3 stay with uu and vv.
+        let du: [DVec3; 12] = std::array::from_fn(|k| p[k / 3 * 4 + k % 3 + 1] - p[k / 3 * 4 + k % 3]);
+        let dv: [DVec3; 12] = std::array::from_fn(|k| p[k + 4] - p[k]);
         let duu: [DVec3; 8] = std::array::from_fn(|k| du[k / 2 * 3 + k % 2 + 1] - du[k / 2 * 3 + k % 2]);
         let dvv: [DVec3; 8] = std::array::from_fn(|k| dv[k + 4] - dv[k]);
-        let duv: [DVec3; 9] = std::array::from_fn(|k| du[(k / 3 + 1) * 3 + k % 3] - du[k / 3 * 3 + k % 3]);
+        let duv: [DVec3; 9] = std::array::from_fn(|k| du[k + 3] - du[k]);
+        let level = |slopes: (f64, f64, f64)| slopes.0 <= radius * slopes.2 && slopes.1 >= -radius * slopes.2;
+        let may_have_foot = level(products(&du, w)) && level(products(&dv, w));
+
         let (a, a_spread) = spread(&du);
         let (b, b_spread) = spread(&dv);
         let (a_length, b_length) = (a.length(), b.length());
-        let second = 2.0 / 3.0;
+        let change = a_length * b_spread + b_length * a_spread + a_spread * b_spread;
+        let may_face = a.cross(b).dot(facing) + change >= 0.0;
+
         let diagonal = |length: f64, spread: f64, bend: (f64, f64, f64)| {
             let slope = (length - spread).max(0.0);
-            slope * slope + second * (bend.0 - radius * bend.2)
+            slope * slope + 2.0 / 3.0 * (bend.0 - radius * bend.2)
         };
         let uu = diagonal(a_length, a_spread, products(&duu, w));
         let vv = diagonal(b_length, b_spread, products(&dvv, w));
         let twist = products(&duv, w);
-        let slack = a_length * b_spread + b_length * a_spread + a_spread * b_spread + radius * twist.2;
         let ab = a.dot(b);
-        let uv = (ab + twist.0).abs().max((ab + twist.1).abs()) + slack;
-        Self { at_least, convex: uu > 0.0 && vv > 0.0 && uu * vv > uv * uv }
+        let uv = (ab + twist.0).abs().max((ab + twist.1).abs()) + change + radius * twist.2;
+        Convexity { convex: uu > 0.0 && vv > 0.0 && uu * vv > uv * uv, may_have_foot, may_face }
     }
 }

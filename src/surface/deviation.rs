@@ -4,7 +4,8 @@
 //! whose normal is compatible (angle below 90 degrees), signed by that point's normal. Means weigh samples by area.
 
 use super::LimitSurface;
-use crate::mesh::FaceId;
+use crate::job::{Cancelled, Job};
+use crate::mesh::{FaceId, Mesh};
 use glam::DVec3;
 use serde::Serialize;
 
@@ -103,13 +104,31 @@ pub fn deviation(
     Deviation::of(&deviation_samples(from, choose, to, per_side))
 }
 
-/// The deviation both ways: samples of `a` measured to `b` and samples of `b` measured to `a`, together.
-pub fn deviation_both_ways(
-    (a, choose_a): (&LimitSurface, impl Fn(FaceId) -> bool),
-    (b, choose_b): (&LimitSurface, impl Fn(FaceId) -> bool),
-    per_side: usize,
-) -> Deviation {
-    let mut samples = deviation_samples(a, choose_a, b, per_side);
-    samples.extend(deviation_samples(b, choose_b, a, per_side));
-    Deviation::of(&samples)
+/// Two limit surfaces compared both ways.
+#[derive(Clone, Copy, PartialEq, Default, Debug, Serialize)]
+pub struct Comparison {
+    /// All samples together.
+    pub both: Deviation,
+    /// Samples of the first, measured to the second.
+    pub first_to_second: Deviation,
+    /// Samples of the second, measured to the first.
+    pub second_to_first: Deviation,
+}
+
+/// Compares the limit surfaces of two control meshes with `per_side` x `per_side` samples per face, both ways.
+///
+/// # Errors
+/// [`Cancelled`].
+pub fn compare(first: &Mesh, second: &Mesh, per_side: usize, job: &Job) -> Result<Comparison, Cancelled> {
+    const STAGE: &str = "deviation";
+    job.step(STAGE, 0.0)?;
+    let (first, second) = (LimitSurface::new(first), LimitSurface::new(second));
+    job.step(STAGE, 0.1)?;
+    let mut samples = deviation_samples(&first, |_| true, &second, per_side);
+    let first_to_second = Deviation::of(&samples);
+    job.step(STAGE, 0.55)?;
+    let back = deviation_samples(&second, |_| true, &first, per_side);
+    samples.extend_from_slice(&back);
+    let (both, second_to_first) = (Deviation::of(&samples), Deviation::of(&back));
+    Ok(Comparison { both, first_to_second, second_to_first })
 }

@@ -3,10 +3,10 @@
 use super::tree::Tree;
 use super::{Bicubic, Corner, LimitSurface, Patch};
 use crate::mesh::{FaceId, Mesh};
-use crate::subdivision::patch::evaluate_corner;
 use crate::subdivision::has_limit;
-use crate::subdivision::sharpness::is_infinite;
+use crate::subdivision::patch::evaluate_corner;
 use crate::subdivision::patch_corner::{Points, VertexLimit};
+use crate::subdivision::sharpness::is_infinite;
 use glam::DVec3;
 
 /// Levels of pieces that are stored beside an extraordinary vertex; deeper ones are made on demand.
@@ -132,7 +132,8 @@ fn mark_rims(frozen: &mut LimitSurface, mesh: &Mesh, faces: &[FaceId], face: Fac
     }
     for (i, h) in mesh.face_half_edges(face).enumerate() {
         let beyond = mesh.face(h.mate());
-        let goes_on = !beyond.is_boundary() && faces.binary_search(&beyond).is_ok() && has_limit(mesh, beyond);
+        let goes_on =
+            !beyond.is_boundary() && faces.binary_search(&beyond).is_ok() && has_limit(mesh, beyond);
         if goes_on && !is_infinite(mesh.edge_sharpness(h)) {
             continue;
         }

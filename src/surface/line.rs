@@ -273,9 +273,8 @@ impl Search<'_> {
     fn into_hits(mut self, length: f64) -> Vec<Hit> {
         let surface = self.surface;
         let direction = self.frame.row(2);
-        self.found.sort_by(|a, b| {
-            a.along.total_cmp(&b.along).then_with(|| a.domain.patch.cmp(&b.domain.patch))
-        });
+        self.found
+            .sort_by(|a, b| a.along.total_cmp(&b.along).then_with(|| a.domain.patch.cmp(&b.domain.patch)));
         let mut hits: Vec<Hit> = Vec::with_capacity(self.found.len());
         let mut last = f64::NEG_INFINITY;
         for found in self.found {

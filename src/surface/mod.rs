@@ -11,10 +11,11 @@ mod deviation;
 mod freeze;
 mod line;
 mod line_piece;
+mod minimise;
 mod tree;
 
 pub use closest::{ClosestOptions, Facing, Foot};
-pub use deviation::{Deviation, DeviationSample, deviation, deviation_both_ways, deviation_samples};
+pub use deviation::{Comparison, Deviation, DeviationSample, compare, deviation, deviation_samples};
 pub use line::Hit;
 
 use crate::mesh::{FaceId, Mesh};
@@ -110,7 +111,7 @@ impl LimitSurface {
             }
         };
         for &quarter in quarters.iter().rev() {
-            found.jet = found.jet.from_quarter(quarter);
+            found.jet = found.jet.in_patch(quarter);
         }
         found.into()
     }
@@ -143,10 +144,10 @@ impl LimitSurface {
     /// has an angle below 90 degrees with `normal` counts; where there is none, the closest point. `None` when the
     /// surface is empty or a coordinate is not finite.
     pub fn signed_distance(&self, point: DVec3, normal: DVec3) -> Option<f64> {
-        let facing = ClosestOptions { facing: Some(Facing { normal, min_cosine: 0.0 }), ..Default::default() };
-        let foot = self
-            .closest(point, &facing)
-            .or_else(|| self.closest(point, &ClosestOptions::default()))?;
+        let facing =
+            ClosestOptions { facing: Some(Facing { normal, min_cosine: 0.0 }), ..Default::default() };
+        let foot =
+            self.closest(point, &facing).or_else(|| self.closest(point, &ClosestOptions::default()))?;
         Some(foot.distance.copysign((point - foot.position).dot(foot.normal)))
     }
 }

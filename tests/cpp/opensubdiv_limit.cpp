@@ -16,7 +16,6 @@
 namespace {
 
 constexpr double position_tolerance = 1e-12;  // of the size
-constexpr double chaikin_tolerance = 1e-6;     // of the size; see the test of refinement
 constexpr double normal_tolerance = 1e-10;
 // Sine of the angle between tangents below which a normal says little.
 constexpr double degenerate = 1e-5;
@@ -92,7 +91,6 @@ void compare(std::string const& name, Polygons const& polygons, Mesh const& mesh
     double const size = size_of(polygons.positions);
     // One refinement makes all faces quads, which the oracle needs.
     int const level = exact_level(polygons);
-    double const allowed = polygons.tags.chaikin ? chaikin_tolerance : position_tolerance;
     Limit const there = limit_there(polygons, level);
     auto const positions = limit_positions(mesh);
     auto const normals = limit_normals(mesh);
@@ -116,8 +114,8 @@ void compare(std::string const& name, Polygons const& polygons, Mesh const& mesh
         }
         double const error = distance(positions[v], there.positions[v]) / size;
         largest = std::max(largest, error);
-        check::that(error <= allowed, where + " is off by " + check::number(error));
-        bool const one_normal = sharp.edges == (boundary ? 2 : 0) && !sharp.vertex && !polygons.tags.chaikin;
+        check::that(error <= position_tolerance, where + " is off by " + check::number(error));
+        bool const one_normal = sharp.edges == (boundary ? 2 : 0) && !sharp.vertex;
         if (faces == 0 || there.degenerate[v] || !one_normal) {
             ++left_out;
         } else if (boundary && faces > 2) {

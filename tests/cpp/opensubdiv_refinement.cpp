@@ -8,8 +8,6 @@ namespace {
 
 constexpr int depth = 3;
 constexpr double tolerance = 1e-12;  // of the size
-// Averages along creases are rounded to float, and depend on the order in which sharpness is added.
-constexpr double chaikin_tolerance = 1e-6;
 
 // The vertices of a child face in our order: corner, edge that leaves it, face, edge that arrives. OpenSubdiv starts
 // elsewhere, but knows which vertex stands for the parent face.
@@ -24,7 +22,6 @@ std::vector<int> quad_of(Far::TopologyRefiner const& refiner, int level, int fac
 
 void compare(std::string const& name, Polygons const& polygons, Mesh const& mesh) {
     double const size = size_of(polygons.positions);
-    double const allowed = polygons.tags.chaikin ? chaikin_tolerance : tolerance;
     auto const refiner = make_refiner(polygons, depth);
     auto const expected = refine_positions(*refiner, polygons);
     auto const levels = refine(mesh, depth);
@@ -68,7 +65,7 @@ void compare(std::string const& name, Polygons const& polygons, Mesh const& mesh
         for (std::size_t v = 0; v < level.positions.size(); ++v) {
             double const error = distance(level.positions[v], expected[number][next_vertices[v]]) / size;
             largest = std::max(largest, error);
-            check::that(error <= allowed,
+            check::that(error <= tolerance,
                         where + ": vertex " + std::to_string(v) + " is off by " + check::number(error));
         }
         vertex_there = std::move(next_vertices);

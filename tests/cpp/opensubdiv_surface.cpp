@@ -19,7 +19,6 @@ namespace {
 namespace Bfr = OpenSubdiv::Bfr;
 
 constexpr double tolerance = 1e-10;          // of the size
-constexpr double chaikin_tolerance = 1e-5;   // see the test of refinement; derivatives lose more than positions
 constexpr int points_per_shape = 10000;
 constexpr int levels = 10;
 
@@ -46,7 +45,6 @@ bool breaks_bfr(Far::TopologyLevel const& level, int face) {
 void compare(std::string const& name, Polygons const& polygons, Mesh const& mesh) {
     if (name.rfind("osd/", 0) != 0) return;
     double const size = size_of(polygons.positions);
-    double const allowed = polygons.tags.chaikin ? chaikin_tolerance : tolerance;
     auto const refiner = make_refiner(polygons, 0);
     Bfr::SurfaceFactory::Options options;
     options.SetApproxLevelSmooth(levels).SetApproxLevelSharp(levels);
@@ -97,7 +95,7 @@ void compare(std::string const& name, Polygons const& polygons, Mesh const& mesh
                                           distance(here.dv, there.dv / (1 / scale))) / size;
             largest.position = std::max(largest.position, position);
             largest.first = std::max(largest.first, first);
-            check::that(position <= allowed && first <= allowed,
+            check::that(position <= tolerance && first <= tolerance,
                         where + " is off by " + check::number(position) + ", " + check::number(first) + " at " +
                             std::to_string(parameters[2 * i]) + " " + std::to_string(parameters[2 * i + 1]));
             ++compared;
@@ -105,7 +103,7 @@ void compare(std::string const& name, Polygons const& polygons, Mesh const& mesh
             double const second = std::max({distance(here.duu, there.duu), distance(here.duv, there.duv),
                                             distance(here.dvv, there.dvv)}) / size;
             largest.second = std::max(largest.second, second);
-            check::that(second <= allowed, where + ": second derivatives are off by " + check::number(second));
+            check::that(second <= tolerance, where + ": second derivatives are off by " + check::number(second));
             ++seconds;
         }
     }

@@ -140,6 +140,10 @@ impl Reader<'_> {
                 _ => return Err(self.fault("a tag without its three counts", REMEDY)),
             }
         }
-        if self.text.is_token_end() { Ok(counts) } else { Err(self.fault("a tag without its three counts", REMEDY)) }
+        if self.text.is_token_end() {
+            Ok(counts)
+        } else {
+            Err(self.fault("a tag without its three counts", REMEDY))
+        }
     }
 }

@@ -43,7 +43,10 @@ std::vector<Jet> evaluate(Mesh const& mesh, std::vector<std::uint32_t> const& fa
     static_assert(sizeof(Jet) == 18 * sizeof(double), "points are written as 18 doubles");
     std::vector<Jet> jets(faces.size());
     welt_error* error = nullptr;
-    require(welt_mesh_evaluate(mesh.get(), faces.data(), corners.data(), parameters.data(), faces.size(),
+    welt_surface* made = nullptr;
+    require(welt_surface_create(mesh.get(), faces.data(), faces.size(), &made, &error), error);
+    Surface const surface(made);
+    require(welt_surface_evaluate(made, faces.data(), corners.data(), parameters.data(), faces.size(),
                                &jets.data()->position.x, 18 * jets.size(), &error),
             error);
     return jets;

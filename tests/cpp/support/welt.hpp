@@ -10,8 +10,10 @@
 
 struct Free {
     void operator()(welt_mesh* mesh) const { welt_mesh_free(mesh); }
+    void operator()(welt_surface* surface) const { welt_surface_free(surface); }
     void operator()(welt_refinement* refinement) const { welt_refinement_free(refinement); }
 };
+using Surface = std::unique_ptr<welt_surface, Free>;
 using Mesh = std::unique_ptr<welt_mesh, Free>;
 using Refinement = std::unique_ptr<welt_refinement, Free>;
 

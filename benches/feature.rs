@@ -1,0 +1,65 @@
+//! A whole groove: round a ring of 200 quads in meshes of 10 thousand to a million, and on a chair.
+//!
+//! `cargo bench --bench feature`. Medians of fresh copies of the mesh; the copy and the reading are not counted.
+
+use glam::DVec3;
+use std::collections::BTreeMap;
+use std::f64::consts::TAU;
+use std::path::Path;
+use std::time::Instant;
+use welt::feature::{self, Feature, GROOVE, Length, Options, Report};
+use welt::job::Job;
+use welt::mark::{Selection, Selector};
+use welt::mesh::{Mesh, Polygons};
+
+const RUNS: usize = 9;
+
+/// A torus of `n` quads round the tube times `m` round the axis.
+fn torus(n: u32, m: u32) -> Mesh {
+    let point = |i: u32, j: u32| {
+        let (u, v) = (TAU * f64::from(i) / f64::from(n), TAU * f64::from(j) / f64::from(m));
+        let r = 4.0 + u.cos();
+        DVec3::new(r * v.cos(), r * v.sin(), u.sin())
+    };
+    let at = |i: u32, j: u32| (j % m) * n + i % n;
+    let mut polygons = Polygons::default();
+    for (i, j) in (0..m).flat_map(|j| (0..n).map(move |i| (i, j))) {
+        polygons.positions.push(point(i, j));
+        polygons.face_sizes.push(4);
+        polygons.face_vertices.extend([at(i, j), at(i, j + 1), at(i + 1, j + 1), at(i + 1, j)]);
+    }
+    Mesh::from_polygons(&polygons).expect("a torus")
+}
+
+fn measure(name: &str, mesh: &Mesh, mark: &str) {
+    let rules = feature::linear_rules().expect("rules");
+    let feature = Feature { rules: &rules, profile: Some(&GROOVE) };
+    let lengths: BTreeMap<String, Length> =
+        [("width".to_owned(), Length::OfEdge(0.3)), ("depth".to_owned(), Length::OfEdge(0.1))].into();
+    let options = Options { lengths, ..Options::default() };
+    let mut runs: Vec<(f64, Report)> = (0..RUNS)
+        .map(|_| {
+            let mut copy = mesh.clone();
+            let start = Instant::now();
+            let selector = Selector::parse(mark).expect("a selector");
+            let selection = Selection::resolve(&copy, &[selector]).expect("marks");
+            let report =
+                feature::apply(&mut copy, &selection, &feature, &options, &Job::new()).expect("applied");
+            (start.elapsed().as_secs_f64() * 1e3, report)
+        })
+        .collect();
+    runs.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let (milliseconds, report) = &runs[RUNS / 2];
+    let stages: Vec<String> = report.times.iter().map(|(stage, ms)| format!("{stage} {ms:.2}")).collect();
+    println!("{name:<34}{:>6} marks {milliseconds:>9.2} ms   ({})", report.marks, stages.join(", "));
+}
+
+fn main() {
+    let chair = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/models/mid_century_chair.obj");
+    let chair = welt::io::import(&chair, &welt::io::ImportOptions::default()).expect("the chair").mesh;
+    measure("chair of 1142 faces", &chair, "ring:240,262");
+    for m in [50, 500, 5000] {
+        let mesh = torus(200, m);
+        measure(&format!("torus of {} faces", 200 * m), &mesh, "ring:0,200");
+    }
+}

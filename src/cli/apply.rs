@@ -1,0 +1,76 @@
+//! `welt apply`.
+
+use super::args::{Apply, FitMethod};
+use super::error::Failure;
+use super::figure::{View, draw, limit_picture};
+use super::files;
+use super::progress::watch;
+use std::process::ExitCode;
+use welt::feature::{Feature, Options, PROFILES, Profile, linear_rules};
+use welt::grammar::RuleSet;
+use welt::io;
+use welt::mark::{Selection, Selector};
+use welt::optimise::Method;
+
+pub fn run(arguments: &Apply) -> Result<ExitCode, Failure> {
+    let profile = arguments.feature.as_deref().map(named).transpose()?;
+    let rules = match &arguments.rules {
+        Some(path) => RuleSet::load(path)?,
+        None => linear_rules()?,
+    };
+    let options = options(arguments)?;
+    let selectors: Vec<Selector> =
+        arguments.marks.iter().map(|text| Selector::parse(text)).collect::<Result<_, _>>()?;
+
+    let mut mesh = files::import(&arguments.input, &arguments.import)?;
+    let before = arguments.figure.as_ref().map(|_| mesh.clone());
+    let selection = Selection::resolve(&mesh, &selectors)?;
+    for end in &selection.ends {
+        eprintln!("welt: {end}");
+    }
+    let feature = Feature { rules: &rules, profile };
+    let report = watch(|job| welt::feature::apply(&mut mesh, &selection, &feature, &options, job))?;
+
+    files::export(&arguments.output, &mesh)?;
+    if let Some(path) = &arguments.report {
+        files::save_json(path, &report)?;
+    }
+    if let (Some(path), Some(before)) = (&arguments.figure, &before) {
+        let limit = limit_picture(before, &mesh, &report)?;
+        let view = View::of_feature(&mesh, &report, &limit);
+        let title = format!("{}: {} marked edges", report.feature, report.marks);
+        let image = draw(&title, &mesh, &report, &limit, view);
+        io::save(path, |out| image.write_png(out))?;
+    }
+    let text = if arguments.json { files::json(&report)? + "\n" } else { report.to_string() };
+    // Standard output may carry the mesh.
+    if files::is_standard(&arguments.output) {
+        eprint!("{text}")
+    } else {
+        print!("{text}")
+    }
+    Ok(ExitCode::SUCCESS)
+}
+
+fn named(name: &str) -> Result<&'static Profile, Failure> {
+    Profile::named(name).ok_or_else(|| {
+        let known: Vec<&str> = PROFILES.iter().map(|profile| profile.name).collect();
+        Failure(format!("there is no feature '{name}'; there are {}", known.join(", ")))
+    })
+}
+
+fn options(arguments: &Apply) -> Result<Options, Failure> {
+    let mut options = Options {
+        method: match arguments.optimise {
+            FitMethod::None => Method::None,
+            FitMethod::Loop => Method::Loop,
+            FitMethod::Solve => Method::Solve,
+        },
+        deviation: true,
+        ..Options::default()
+    };
+    for setting in &arguments.set {
+        options.set(setting, arguments.rules.is_some())?;
+    }
+    Ok(options)
+}

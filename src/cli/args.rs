@@ -1,0 +1,162 @@
+//! The arguments of every command.
+
+use clap::{Args, Parser, Subcommand, ValueEnum};
+use std::path::PathBuf;
+use welt::io::{ImportOptions, Limits};
+
+#[derive(Parser)]
+#[command(name = "welt", version, about = "Features on Catmull-Clark control meshes", max_term_width = 100)]
+pub struct Arguments {
+    #[command(subcommand)]
+    pub command: Command,
+}
+
+#[derive(Subcommand)]
+pub enum Command {
+    /// Tell what a mesh file holds and what is wrong with it (exit code 1 when something is)
+    Check(Check),
+    /// Apply a feature to marked edges
+    Apply(Apply),
+    /// Write the limit surface as a mesh: refine N times and move every vertex to its limit
+    Limit(Limit),
+    /// Measure how far the limit surfaces of two control meshes are apart
+    Deviation(Deviation),
+    /// Check or list rule files
+    Rules(Rules),
+    /// Make example features on chairs: control meshes, limit surfaces, reports, figures
+    Demo(Demo),
+}
+
+/// How files are taken over.
+#[derive(Args, Clone)]
+pub struct Import {
+    /// Split apart, turn round or remove what cannot be held instead of refusing the file
+    #[arg(long)]
+    pub repair: bool,
+    /// Merge vertices that are no further apart than EPS (model units)
+    #[arg(long, value_name = "EPS")]
+    pub weld: Option<f64>,
+}
+
+impl Import {
+    pub fn options(&self) -> ImportOptions {
+        ImportOptions { repair: self.repair, weld: self.weld, limits: Limits::default() }
+    }
+}
+
+#[derive(Args)]
+pub struct Check {
+    /// OBJ or PLY file, or - for OBJ on standard input
+    pub input: PathBuf,
+    /// Print JSON
+    #[arg(long)]
+    pub json: bool,
+    #[command(flatten)]
+    pub import: Import,
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+pub enum FitMethod {
+    /// Leave vertices where the rules put them
+    None,
+    /// The paper's iteration
+    Loop,
+    /// The sparse system that iteration converges to
+    Solve,
+}
+
+#[derive(Args)]
+pub struct Apply {
+    /// OBJ or PLY file, or - for OBJ on standard input
+    pub input: PathBuf,
+    /// Where the new control mesh goes (.obj or .ply), or - for OBJ on standard output
+    #[arg(short, long, value_name = "OUT")]
+    pub output: PathBuf,
+    /// Feature to apply: groove, ridge
+    #[arg(long, value_name = "NAME", required_unless_present = "rules")]
+    pub feature: Option<String>,
+    /// Rule file to run on the marks instead of a feature
+    #[arg(long, value_name = "FILE", conflicts_with = "feature")]
+    pub rules: Option<PathBuf>,
+    /// Edges to mark: edge:A,B[@t], ring:A,B, path:A,B:C,D, cut:V,V,..., select:FILE (0-based vertices; #kind at the end)
+    #[arg(long = "mark", value_name = "SELECTOR", required = true)]
+    pub marks: Vec<String>,
+    /// Parameters: width=0.3 (model units) or width=30% (of the local edge)
+    #[arg(long = "set", value_name = "NAME=VALUE")]
+    pub set: Vec<String>,
+    /// How to fit the changed mesh to the surface as it was
+    #[arg(long, value_enum, default_value = "solve")]
+    pub optimise: FitMethod,
+    /// Write a report as JSON
+    #[arg(long, value_name = "FILE")]
+    pub report: Option<PathBuf>,
+    /// Write a figure: control mesh, limit surface, deviation map
+    #[arg(long, value_name = "FILE")]
+    pub figure: Option<PathBuf>,
+    /// Print the report as JSON instead of text
+    #[arg(long)]
+    pub json: bool,
+    #[command(flatten)]
+    pub import: Import,
+}
+
+#[derive(Args)]
+pub struct Limit {
+    /// OBJ or PLY file, or - for OBJ on standard input
+    pub input: PathBuf,
+    /// Where the mesh goes: .obj, or .ply with normals; - for OBJ on standard output
+    #[arg(short, long, value_name = "OUT")]
+    pub output: PathBuf,
+    /// How often to refine; 0 moves the control vertices themselves, in their order
+    #[arg(long, default_value_t = 2, value_parser = clap::value_parser!(u8).range(0..=10))]
+    pub level: u8,
+    #[command(flatten)]
+    pub import: Import,
+}
+
+#[derive(Args)]
+pub struct Deviation {
+    /// First control mesh
+    pub first: PathBuf,
+    /// Second control mesh
+    pub second: PathBuf,
+    /// Samples per side of each face
+    #[arg(long, default_value_t = 8, value_parser = clap::value_parser!(u16).range(1..=64))]
+    pub samples: u16,
+    /// Print JSON
+    #[arg(long)]
+    pub json: bool,
+    #[command(flatten)]
+    pub import: Import,
+}
+
+#[derive(Args)]
+pub struct Rules {
+    #[command(subcommand)]
+    pub action: RulesAction,
+}
+
+#[derive(Subcommand)]
+pub enum RulesAction {
+    /// Check rule files; exit code 1 when one has an error
+    Check {
+        /// Rule files
+        #[arg(required = true)]
+        files: Vec<PathBuf>,
+    },
+    /// List features, or the rules and parameters of a file
+    List {
+        /// A rule file; the built-in features without one
+        file: Option<PathBuf>,
+        /// Print JSON
+        #[arg(long)]
+        json: bool,
+    },
+}
+
+#[derive(Args)]
+pub struct Demo {
+    /// Folder for the results; it is made if missing
+    #[arg(default_value = "demo")]
+    pub folder: PathBuf,
+}

@@ -1,0 +1,102 @@
+//! `welt demo`: features on real chairs.
+
+use super::args::Demo;
+use super::error::Failure;
+use super::figure::{View, draw, limit_picture};
+use super::files;
+use glam::DVec3;
+use std::process::ExitCode;
+use std::time::Instant;
+use welt::feature::{self, Feature, Options, Profile};
+use welt::io::{self, Format, ImportOptions};
+use welt::job::Job;
+use welt::mark::{Selection, Selector};
+
+/// One example.
+struct Scene {
+    name: &'static str,
+    title: &'static str,
+    model: &'static str,
+    profile: &'static Profile,
+    marks: &'static [&'static str],
+    set: &'static [&'static str],
+    viewer: DVec3,
+    zoom: Option<f64>,
+}
+
+const LEAF: &str = include_str!("../../tests/data/models/leaf_chair.obj");
+const MID_CENTURY: &str = include_str!("../../tests/data/models/mid_century_chair.obj");
+
+const SCENES: [Scene; 3] = [
+    Scene {
+        name: "ring",
+        title: "A groove round a shell chair (one click: ring:3,331)",
+        model: LEAF,
+        profile: &feature::GROOVE,
+        marks: &["ring:3,331"],
+        set: &["width=1.6", "depth=0.6"],
+        viewer: DVec3::new(-0.9, 0.6, 1.5),
+        zoom: None,
+    },
+    Scene {
+        name: "corner",
+        title: "A seam with corners on a seat",
+        model: MID_CENTURY,
+        profile: &feature::GROOVE,
+        marks: &["ring:240,262"],
+        set: &["width=30%", "depth=8%"],
+        viewer: DVec3::new(0.7, 0.9, 1.6),
+        zoom: None,
+    },
+    Scene {
+        name: "crossing",
+        title: "Two seams that cross",
+        model: MID_CENTURY,
+        profile: &feature::RIDGE,
+        marks: &["ring:240,262"],
+        set: &["width=30%", "height=8%"],
+        viewer: DVec3::new(0.7, 0.9, 1.6),
+        zoom: None,
+    },
+];
+
+pub fn run(arguments: &Demo) -> Result<ExitCode, Failure> {
+    let folder = &arguments.folder;
+    std::fs::create_dir_all(folder).map_err(|e| Failure(format!("{}: {e}", folder.display())))?;
+    let rules = feature::linear_rules()?;
+    for scene in &SCENES {
+        let start = Instant::now();
+        let before =
+            io::import_bytes(scene.name, Format::Obj, scene.model.as_bytes(), &ImportOptions::default())?
+                .mesh;
+        let selectors: Vec<Selector> =
+            scene.marks.iter().map(|text| Selector::parse(text)).collect::<Result<_, _>>()?;
+        let mut options = Options { deviation: true, ..Options::default() };
+        for setting in scene.set {
+            options.set(setting, false)?;
+        }
+        let selection = Selection::resolve(&before, &selectors)?;
+        let feature = Feature { rules: &rules, profile: Some(scene.profile) };
+        let mut after = before.clone();
+        let report = feature::apply(&mut after, &selection, &feature, &options, &Job::new())?;
+
+        let limit = limit_picture(&before, &after, &report)?;
+        let view = View { viewer: scene.viewer, up: DVec3::Y, zoom: scene.zoom };
+        let image = draw(scene.title, &after, &report, &limit, view);
+        let path = |suffix: &str| folder.join(format!("{}{suffix}", scene.name));
+        files::export(&path(".obj"), &after)?;
+        let ply = io::ply::Options {
+            normals: Some(&limit.normals),
+            quality: Some(&limit.deviation),
+            ..Default::default()
+        };
+        io::save(&path("_limit.ply"), |out| io::ply::write(&limit.polygons, &ply, out))?;
+        files::save_json(&path(".json"), &report)?;
+        io::save(&path(".png"), |out| image.write_png(out))?;
+        println!("{} ({:.1} s): {}", path(".png").display(), start.elapsed().as_secs_f64(), scene.title);
+        for line in report.to_string().lines() {
+            println!("    {line}");
+        }
+    }
+    Ok(ExitCode::SUCCESS)
+}

@@ -1,0 +1,40 @@
+//! `welt deviation`.
+
+use super::args;
+use super::error::Failure;
+use super::files;
+use super::progress::watch;
+use serde::Serialize;
+use std::process::ExitCode;
+use welt::surface::{Comparison, compare};
+
+#[derive(Serialize)]
+struct Output {
+    /// Bounding box diagonal of the first.
+    size: f64,
+    #[serde(flatten)]
+    comparison: Comparison,
+}
+
+pub fn run(arguments: &args::Deviation) -> Result<ExitCode, Failure> {
+    let load = |path| files::import(path, &arguments.import);
+    let (first, second) = (load(&arguments.first)?, load(&arguments.second)?);
+    let size = first.size();
+    let comparison = watch(|job| compare(&first, &second, arguments.samples.into(), job))?;
+    if arguments.json {
+        println!("{}", files::json(&Output { size, comparison })?);
+        return Ok(ExitCode::SUCCESS);
+    }
+    let Comparison { both, first_to_second, second_to_first } = comparison;
+    println!("size (bounding box diagonal of the first): {size}");
+    println!("{:<18}{:>14}{:>14}{:>14}{:>10}", "distance", "max", "rms", "95 %", "samples");
+    let rows =
+        [("both ways", both), ("first to second", first_to_second), ("second to first", second_to_first)];
+    for (name, d) in rows {
+        println!("{name:<18}{:>14.6e}{:>14.6e}{:>14.6e}{:>10}", d.max, d.rms, d.p95, d.samples);
+    }
+    if size > 0.0 {
+        println!("relative to the size: max {:.3e}, rms {:.3e}", both.max / size, both.rms / size);
+    }
+    Ok(ExitCode::SUCCESS)
+}

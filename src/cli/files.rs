@@ -1,0 +1,56 @@
+//! Files, with `-` for standard input and output.
+
+use super::args::Import;
+use super::error::Failure;
+use serde::Serialize;
+use std::io::{Read, Write};
+use std::path::Path;
+use welt::io::{self, Format, ImportReport, Source};
+use welt::mesh::Mesh;
+
+pub fn is_standard(path: &Path) -> bool {
+    path.as_os_str() == "-"
+}
+
+/// The polygons of a file, before the mesh is built.
+pub fn read(path: &Path, import: &Import) -> Result<Source, Failure> {
+    let options = import.options();
+    if !is_standard(path) {
+        return Ok(io::read(path, &options)?);
+    }
+    let mut bytes = Vec::new();
+    std::io::stdin().lock().read_to_end(&mut bytes)?;
+    Ok(io::read_bytes("standard input", Format::Obj, &bytes, &options)?)
+}
+
+/// The mesh of a file. What was left out or repaired is told on standard error.
+pub fn import(path: &Path, import: &Import) -> Result<Mesh, Failure> {
+    let imported = read(path, import)?.build()?;
+    tell(path, &imported.report);
+    Ok(imported.mesh)
+}
+
+fn tell(path: &Path, report: &ImportReport) {
+    for line in report.to_string().lines() {
+        eprintln!("{}: {line}", path.display());
+    }
+}
+
+/// Writes the control mesh.
+pub fn export(path: &Path, mesh: &Mesh) -> Result<(), Failure> {
+    if !is_standard(path) {
+        return Ok(io::export(path, mesh)?);
+    }
+    let mut out = std::io::stdout().lock();
+    io::obj::write(&mesh.to_polygons(), &mut out)?;
+    Ok(out.flush()?)
+}
+
+pub fn save_json(path: &Path, value: &impl Serialize) -> Result<(), Failure> {
+    let text = json(value)?;
+    Ok(io::save(path, |out| writeln!(out, "{text}"))?)
+}
+
+pub fn json(value: &impl Serialize) -> Result<String, Failure> {
+    Ok(serde_json::to_string_pretty(value)?)
+}

@@ -1,0 +1,38 @@
+//! The program: arguments in, one library call, result out. Exit code 0 on success, 1 on an error or a defect, 2 on
+//! bad usage.
+
+mod apply;
+mod args;
+mod check;
+mod demo;
+mod deviation;
+mod error;
+mod figure;
+mod files;
+mod limit;
+mod progress;
+mod rules;
+
+use args::{Arguments, Command};
+use clap::Parser;
+use std::process::ExitCode;
+
+/// Parses the arguments and runs the command.
+pub fn run() -> ExitCode {
+    let arguments = Arguments::parse();
+    let result = match &arguments.command {
+        Command::Check(check) => check::run(check),
+        Command::Apply(apply) => apply::run(apply),
+        Command::Limit(limit) => limit::run(limit),
+        Command::Deviation(deviation) => deviation::run(deviation),
+        Command::Rules(rules) => rules::run(rules),
+        Command::Demo(demo) => demo::run(demo),
+    };
+    match result {
+        Ok(code) => code,
+        Err(error) => {
+            eprintln!("welt: {error}");
+            ExitCode::FAILURE
+        }
+    }
+}

@@ -1,0 +1,113 @@
+//! How far the result is from the surface as it was: measured over the surface, both ways.
+
+use super::displace::Green;
+use super::linear::affected_faces;
+use super::report::{Difference, Warning};
+use crate::job::{Cancelled, Job};
+use crate::mesh::{FaceId, Mesh};
+use crate::surface::{Deviation, DeviationSample, LimitSurface, deviation_samples};
+use glam::DVec3;
+
+/// Samples per side of a face (SYSTEMS.md, A.4).
+const SAMPLES: usize = 8;
+/// Rings of faces around the crossed ones that are frozen: the affected ones and one more, where feet may lie.
+const RINGS: usize = 5;
+
+/// The surface as it was around a feature, for the report.
+pub(super) struct Reference {
+    surface: LimitSurface,
+    /// Original faces of the footprint, ascending.
+    footprint: Vec<FaceId>,
+    /// Bounding box diagonal of the mesh before.
+    size: f64,
+}
+
+impl Reference {
+    pub(super) fn freeze(mesh: &Mesh, crossed: &[FaceId], footprint: Vec<FaceId>) -> Self {
+        let mut faces = crossed.to_vec();
+        for _ in 0..RINGS {
+            faces = mesh.grow_faces(&faces);
+        }
+        Self { surface: LimitSurface::around(mesh, &faces), footprint, size: mesh.size() }
+    }
+
+    pub(super) fn size(&self) -> f64 {
+        self.size
+    }
+
+    /// Distances between the present limit surface and the frozen one.
+    pub(super) fn difference(
+        &self,
+        mesh: &Mesh,
+        changed: &[FaceId],
+        job: &Job,
+    ) -> Result<Difference, Cancelled> {
+        let affected = affected_faces(mesh, changed);
+        // Feet of the frozen surface's samples may lie one face further.
+        let now = LimitSurface::around(mesh, &mesh.grow_faces(&affected));
+        let in_footprint = |f: FaceId| self.footprint.binary_search(&mesh.original_face(f)).is_ok();
+        let was_affected = {
+            let mut faces: Vec<FaceId> = affected.iter().map(|&f| mesh.original_face(f)).collect();
+            faces.sort_unstable();
+            faces.dedup();
+            move |f: FaceId| faces.binary_search(&f).is_ok()
+        };
+        let is_affected = |f: FaceId| affected.binary_search(&f).is_ok();
+        job.step("deviation", 0.0)?;
+        let mut samples = deviation_samples(&now, is_affected, &self.surface, SAMPLES);
+        let mut outside: Vec<DeviationSample> =
+            samples.iter().filter(|s| !in_footprint(s.face)).copied().collect();
+        job.step("deviation", 0.5)?;
+        let back = deviation_samples(&self.surface, was_affected, &now, SAMPLES);
+        outside.extend(back.iter().filter(|s| self.footprint.binary_search(&s.face).is_err()));
+        samples.extend(back);
+        Ok(Difference { total: Deviation::of(&samples), outside: Deviation::of(&outside) })
+    }
+}
+
+/// The surface near a feature in space, wherever it is on the mesh: opposite walls.
+pub(super) struct Walls {
+    surface: LimitSurface,
+}
+
+impl Walls {
+    /// Faces whose control points come near the box around the crossed faces, by as much again as the box is large.
+    pub(super) fn around(mesh: &Mesh, crossed: &[FaceId]) -> Self {
+        let corners = || crossed.iter().flat_map(|&f| mesh.face_vertices(f)).map(|v| mesh.position(v));
+        let (low, high) = corners()
+            .fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), p| (low.min(p), high.max(p)));
+        let near: Vec<FaceId> = mesh
+            .faces()
+            .filter(|&f| {
+                let (face_low, face_high) = mesh
+                    .face_vertices(f)
+                    .map(|v| mesh.position(v))
+                    .fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(l, h), p| (l.min(p), h.max(p)));
+                face_low.cmple(high).all() && face_high.cmpge(low).all()
+            })
+            .collect();
+        Self { surface: LimitSurface::around(mesh, &near) }
+    }
+
+    /// The worst place where the feature goes deeper than the wall behind it is thick.
+    pub(super) fn warning(&self, greens: &[Green]) -> Option<Warning> {
+        greens
+            .iter()
+            .filter(|green| green.target < 0.0)
+            .filter_map(|green| {
+                let inwards = -green.normal;
+                let thickness = self
+                    .surface
+                    .line_hits(green.base, inwards)
+                    .into_iter()
+                    // The far side of a wall faces away; the near side is the surface itself.
+                    .filter(|hit| hit.s > 0.0 && hit.normal.dot(green.normal) < 0.0)
+                    .map(|hit| hit.s)
+                    .fold(f64::INFINITY, f64::min);
+                let depth = -green.target;
+                (thickness < depth).then_some((thickness, depth, green.vertex.0))
+            })
+            .min_by(|a, b| (a.0 - a.1).total_cmp(&(b.0 - b.1)))
+            .map(|(thickness, depth, vertex)| Warning::Wall { thickness, depth, vertex })
+    }
+}

@@ -1,0 +1,69 @@
+//! Lengths as users give them: in model units, or relative to the local edge.
+
+use serde::{Serialize, Serializer};
+use std::fmt;
+use std::str::FromStr;
+
+/// A width, depth or height.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub enum Length {
+    /// In model units.
+    Units(f64),
+    /// As a fraction of the length of the crossed edge (`30%` is 0.3).
+    OfEdge(f64),
+}
+
+impl Length {
+    /// The length in model units on an edge of length `edge`.
+    pub fn on_edge(self, edge: f64) -> f64 {
+        match self {
+            Self::Units(x) => x,
+            Self::OfEdge(fraction) => fraction * edge,
+        }
+    }
+
+    /// The number itself, whatever it counts in.
+    pub fn value(self) -> f64 {
+        match self {
+            Self::Units(x) | Self::OfEdge(x) => x,
+        }
+    }
+}
+
+impl FromStr for Length {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let text = text.trim();
+        let (number, percent) = match text.strip_suffix('%') {
+            Some(number) => (number, true),
+            None => (text, false),
+        };
+        let x: f64 = number
+            .trim()
+            .parse()
+            .ok()
+            .filter(|x: &f64| x.is_finite())
+            .ok_or_else(|| format!("'{text}' is not a length; give a number in model units, or a percentage of the local edge such as 30%"))?;
+        Ok(if percent { Self::OfEdge(x / 100.0) } else { Self::Units(x) })
+    }
+}
+
+impl fmt::Display for Length {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Units(x) => write!(f, "{x}"),
+            Self::OfEdge(x) => write!(f, "{}%", x * 100.0),
+        }
+    }
+}
+
+/// A number for model units, a text such as "30%" for a share of the edge.
+impl Serialize for Length {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        match self {
+            Self::Units(x) => serializer.serialize_f64(*x),
+            Self::OfEdge(_) => serializer.serialize_str(&self.to_string()),
+        }
+    }
+}

@@ -1,0 +1,632 @@
+//! The pipeline of a linear feature, and of any rule set on marked edges.
+
+use super::displace::{Green, LineVertex, displace, greens, line_vertices};
+use super::measure::{Reached, Station, stations};
+use super::place::{WidthError, cuts};
+use super::report::{Counts, Dimension, Leftover, Report, Warning};
+use super::{Length, Profile, deviation};
+use crate::grammar::{self, RuleSet};
+use crate::job::{Cancelled, Job};
+use crate::mark::{self, Mark, Selection};
+use crate::mesh::{Domain, FaceId, HalfEdgeId, Mesh, Node, Value, VertexId};
+use crate::optimise::{self, FitReport, Method, Target};
+use crate::subdivision::limit_normal;
+use glam::DVec3;
+use rustc_hash::FxHashMap;
+use std::collections::BTreeMap;
+use std::time::Instant;
+
+/// What to apply.
+#[derive(Clone, Copy, Debug)]
+pub struct Feature<'a> {
+    /// The rules that rewrite the mesh.
+    pub rules: &'a RuleSet,
+    /// The cross-section; without one the rules run on the marks as they are and nothing is displaced.
+    pub profile: Option<&'a Profile>,
+}
+
+/// How to apply it.
+#[derive(Clone, Debug)]
+pub struct Options {
+    /// Parameters of the profile that differ from their defaults (`width`, `depth`, `height`).
+    pub lengths: BTreeMap<String, Length>,
+    /// Parameters of the rule set that differ from their defaults.
+    pub numbers: BTreeMap<String, f64>,
+    /// How to fit the changed mesh to the surface as it was.
+    pub method: Method,
+    /// Measure deviations, and look for walls thinner than the feature is deep. Costs more than the feature itself.
+    pub deviation: bool,
+}
+
+impl Default for Options {
+    fn default() -> Self {
+        Self { lengths: BTreeMap::new(), numbers: BTreeMap::new(), method: Method::Solve, deviation: false }
+    }
+}
+
+/// Why a feature was not applied. The mesh is as it was.
+#[derive(Clone, Debug, thiserror::Error)]
+pub enum FeatureError {
+    /// Nothing is marked.
+    #[error("no edge is marked; name at least one edge the feature is to cross")]
+    NoMarks,
+    /// A parameter that the feature does not have.
+    #[error("{feature} has no parameter '{name}'; it has {}", known.join(", "))]
+    UnknownParameter {
+        /// The feature or rule set.
+        feature: String,
+        /// The name given.
+        name: String,
+        /// The names there are.
+        known: Vec<String>,
+    },
+    /// A parameter out of its range.
+    #[error("{name} is {value}; {remedy}")]
+    BadParameter {
+        /// Its name.
+        name: String,
+        /// The value given.
+        value: String,
+        /// What it should be.
+        remedy: &'static str,
+    },
+    /// A width that an edge cannot take.
+    #[error(transparent)]
+    Width(#[from] WidthError),
+    /// The rules failed.
+    #[error(transparent)]
+    Rules(#[from] grammar::RunError),
+    /// The caller cancelled.
+    #[error(transparent)]
+    Cancelled(#[from] Cancelled),
+}
+
+/// Rings of faces around the marked ones whose limit surface is frozen for the fit: the active vertices lie on the
+/// faces around the changed ones.
+const FIT_RINGS: usize = 2;
+/// Reached width or depth within this fraction of the asked one needs no correction.
+const GOOD_ENOUGH: f64 = 1e-3;
+/// A correction changes width or depth by at most this factor.
+const LARGEST_CORRECTION: f64 = 2.0;
+
+/// Applies `feature` to the edges of `selection`.
+///
+/// The mesh is changed in place and compacted; the report speaks of the result.
+///
+/// # Errors
+/// See [`FeatureError`]; the mesh is as it was then.
+pub fn apply(
+    mesh: &mut Mesh,
+    selection: &Selection,
+    feature: &Feature,
+    options: &Options,
+    job: &Job,
+) -> Result<Report, FeatureError> {
+    let mut run = Run::prepare(mesh, selection, feature, options)?;
+    let checkpoint = mesh.begin();
+    match run.execute(mesh, job) {
+        Ok(mut report) => {
+            mesh.commit(checkpoint);
+            let map = mesh.compact();
+            report.renumber(&map);
+            Ok(report)
+        }
+        Err(error) => {
+            mesh.rollback(checkpoint);
+            Err(error)
+        }
+    }
+}
+
+/// Everything that stays the same while the pipeline runs.
+struct Run<'a> {
+    feature: &'a Feature<'a>,
+    options: &'a Options,
+    selection: &'a Selection,
+    /// Asked width and depth per mark, in model units; empty without a profile.
+    widths: Vec<f64>,
+    extents: Vec<f64>,
+    before: Counts,
+    clock: Clock,
+}
+
+/// What one pass through place, rewrite, fit, displace, measure gave.
+struct Pass {
+    outcome: grammar::Outcome,
+    changed: Vec<FaceId>,
+    fit: FitReport,
+    lines: Vec<LineVertex>,
+    greens: Vec<Green>,
+    stations: Vec<Station>,
+    reached: Vec<Option<Reached>>,
+    folds: Vec<u32>,
+    fitted: Option<super::Difference>,
+}
+
+impl<'a> Run<'a> {
+    fn prepare(
+        mesh: &Mesh,
+        selection: &'a Selection,
+        feature: &'a Feature<'a>,
+        options: &'a Options,
+    ) -> Result<Self, FeatureError> {
+        if selection.marks.is_empty() {
+            return Err(FeatureError::NoMarks);
+        }
+        let [vertices, edges, faces] = mesh.counts();
+        let mut run = Self {
+            feature,
+            options,
+            selection,
+            widths: Vec::new(),
+            extents: Vec::new(),
+            before: Counts { vertices, edges, faces },
+            clock: Clock::start(),
+        };
+        run.check_parameters()?;
+        if let Some(profile) = feature.profile {
+            let lengths = |name: &str| -> Vec<f64> {
+                let length = run.length(profile, name);
+                let on = |mark: &Mark| length.on_edge(mesh.edge_length(mark.half_edge));
+                selection.marks.iter().map(on).collect()
+            };
+            let (widths, extents) = (lengths("width"), lengths(profile.extent));
+            // Refuse widths that do not fit before anything is done.
+            for (mark, width) in selection.marks.iter().zip(&widths) {
+                cuts(mesh, mark, profile, *width)?;
+            }
+            (run.widths, run.extents) = (widths, extents);
+        }
+        Ok(run)
+    }
+
+    fn check_parameters(&self) -> Result<(), FeatureError> {
+        let Some(profile) = self.feature.profile else { return Ok(()) };
+        for (name, length) in &self.options.lengths {
+            if !profile.parameters.iter().any(|p| p.name == name) {
+                return Err(FeatureError::UnknownParameter {
+                    feature: profile.name.to_owned(),
+                    name: name.clone(),
+                    known: profile.parameters.iter().map(|p| p.name.to_owned()).collect(),
+                });
+            }
+            let (fine, remedy) = if name == "width" {
+                (length.value() > 0.0, "it must be greater than 0")
+            } else {
+                (length.value() >= 0.0, "it must not be negative; a groove turned outwards is a ridge")
+            };
+            if !fine || !length.value().is_finite() {
+                return Err(FeatureError::BadParameter {
+                    name: name.clone(),
+                    value: length.to_string(),
+                    remedy,
+                });
+            }
+        }
+        Ok(())
+    }
+
+    fn length(&self, profile: &Profile, name: &str) -> Length {
+        let default = profile.parameters.iter().find(|p| p.name == name).map(|p| p.default);
+        self.options.lengths.get(name).copied().or(default).unwrap_or(Length::Units(0.0))
+    }
+
+    fn execute(&mut self, mesh: &mut Mesh, job: &Job) -> Result<Report, FeatureError> {
+        let crossed = self.crossed_faces(mesh);
+        let mut region = crossed.clone();
+        for _ in 0..FIT_RINGS {
+            region = mesh.grow_faces(&region);
+        }
+        let footprint = mesh.grow_faces(&crossed);
+        let reference =
+            self.options.deviation.then(|| deviation::Reference::freeze(mesh, &crossed, footprint));
+        let walls = self.options.deviation.then(|| deviation::Walls::around(mesh, &crossed));
+        let mut target = Target::freeze(mesh, &region);
+        self.clock.lap("freeze");
+
+        let mut corrections = 0;
+        let (mut widths, mut extents) = (self.widths.clone(), self.extents.clone());
+        let pass = loop {
+            let checkpoint = mesh.begin();
+            let pass = self.pass(mesh, &widths, &extents, &target, reference.as_ref(), job)?;
+            if let Some(wider) = self.uncovered(mesh, &pass.changed, &region) {
+                // Rules reached further than the frozen surface: freeze more and start again.
+                mesh.rollback(checkpoint);
+                region = mesh.grow_faces(&wider);
+                target = Target::freeze(mesh, &region);
+                continue;
+            }
+            if corrections == 0 && self.correct(mesh, checkpoint, &pass, &mut widths, &mut extents) {
+                corrections += 1;
+                continue;
+            }
+            break pass;
+        };
+        self.report(mesh, pass, corrections, reference.as_ref(), walls.as_ref(), job)
+    }
+
+    /// The real faces beside the marked edges.
+    fn crossed_faces(&self, mesh: &Mesh) -> Vec<FaceId> {
+        let mut faces: Vec<FaceId> = self
+            .selection
+            .marks
+            .iter()
+            .flat_map(|mark| [mark.half_edge, mark.half_edge.mate()])
+            .map(|h| mesh.face(h))
+            .filter(|f| !f.is_boundary())
+            .collect();
+        faces.sort_unstable();
+        faces.dedup();
+        faces
+    }
+
+    /// The frozen faces and those that are missing among them, when the fit needs more than `region`.
+    fn uncovered(&self, mesh: &Mesh, changed: &[FaceId], region: &[FaceId]) -> Option<Vec<FaceId>> {
+        let mut needed: Vec<FaceId> =
+            mesh.grow_faces(changed).into_iter().map(|f| mesh.original_face(f)).collect();
+        needed.sort_unstable();
+        needed.dedup();
+        needed.retain(|f| region.binary_search(f).is_err() && f.index() < self.before.faces);
+        if needed.is_empty() {
+            return None;
+        }
+        needed.extend_from_slice(region);
+        Some(needed)
+    }
+
+    fn pass(
+        &mut self,
+        mesh: &mut Mesh,
+        widths: &[f64],
+        extents: &[f64],
+        target: &Target,
+        reference: Option<&deviation::Reference>,
+        job: &Job,
+    ) -> Result<Pass, FeatureError> {
+        job.step("rules", 0.1)?;
+        self.place_marks(mesh, widths)?;
+        let run_options = grammar::RunOptions {
+            parameters: self.options.numbers.clone(),
+            job: Some(job),
+            ..grammar::RunOptions::default()
+        };
+        let outcome = grammar::run(self.feature.rules, mesh, &run_options)?;
+        let changed = outcome.touched.clone();
+        self.clock.lap("rules");
+
+        job.step("fit", 0.3)?;
+        let active = optimise::active_set(mesh, &changed);
+        let fit = optimise::fit(mesh, &active, target, self.options.method, job)?;
+        self.clock.lap("fit");
+
+        let fitted = match reference {
+            Some(reference) => Some(reference.difference(mesh, &changed, job)?),
+            None => None,
+        };
+        self.clock.lap("deviation");
+
+        job.step("displace", 0.6)?;
+        let mut pass = Pass {
+            outcome,
+            changed,
+            fit,
+            lines: Vec::new(),
+            greens: Vec::new(),
+            stations: Vec::new(),
+            reached: Vec::new(),
+            folds: Vec::new(),
+            fitted,
+        };
+        if let Some(profile) = self.feature.profile {
+            pass.lines = line_vertices(mesh);
+            pass.greens = greens(mesh, &pass.lines, profile, extents);
+            self.raise(mesh, &active, profile, &mut pass);
+        }
+        self.clock.lap("displace");
+        Ok(pass)
+    }
+
+    fn place_marks(&self, mesh: &mut Mesh, widths: &[f64]) -> Result<(), FeatureError> {
+        mark::place(mesh, &self.selection.marks);
+        let Some(profile) = self.feature.profile else { return Ok(()) };
+        let [cuts_name, mark_name] = ["cuts", "mark"].map(|name| mesh.intern(name));
+        for (i, (mark, width)) in self.selection.marks.iter().zip(widths).enumerate() {
+            let forward = cuts(mesh, mark, profile, *width)?;
+            let backward: Vec<f64> = forward.iter().rev().map(|t| 1.0 - t).collect();
+            let h = mark.half_edge;
+            mesh.set_attribute(Node::HalfEdge(h), cuts_name, Some(Value::Numbers(forward.into())));
+            mesh.set_attribute(Node::HalfEdge(h.mate()), cuts_name, Some(Value::Numbers(backward.into())));
+            for h in [h, h.mate()] {
+                mesh.set_attribute(Node::HalfEdge(h), mark_name, Some(Value::Number(i as f64)));
+            }
+        }
+        Ok(())
+    }
+
+    /// Displaces the green vertices, measures what was reached and looks for folds.
+    fn raise(&self, mesh: &mut Mesh, active: &[VertexId], profile: &Profile, pass: &mut Pass) {
+        let flat: FxHashMap<VertexId, DVec3> =
+            pass.greens.iter().map(|green| (green.vertex, mesh.position(green.vertex))).collect();
+        let normals: Vec<Option<DVec3>> = active.iter().map(|&v| limit_normal(mesh, v)).collect();
+        displace(mesh, &pass.greens);
+        pass.stations = stations(mesh, &pass.lines, self.selection.marks.len(), profile.lines.len());
+        pass.reached = pass
+            .stations
+            .iter()
+            .map(|station| {
+                station.measure(
+                    |v| flat.get(&v).copied().unwrap_or_else(|| mesh.position(v)),
+                    |v| mesh.position(v),
+                )
+            })
+            .collect();
+        pass.folds = active
+            .iter()
+            .zip(normals)
+            .filter(|&(&v, before)| {
+                before.zip(limit_normal(mesh, v)).is_some_and(|(before, after)| before.dot(after) <= 0.0)
+            })
+            .map(|(&v, _)| v.0)
+            .collect();
+    }
+
+    /// Takes the pass back and changes `widths` and `extents` when the measured ones are off; false when they are
+    /// good enough.
+    fn correct(
+        &self,
+        mesh: &mut Mesh,
+        checkpoint: crate::mesh::Checkpoint,
+        pass: &Pass,
+        widths: &mut [f64],
+        extents: &mut [f64],
+    ) -> bool {
+        let Some(profile) = self.feature.profile else { return false };
+        let corrections: Vec<Option<[f64; 2]>> = self.corrections(pass);
+        let off = |c: &[f64; 2]| c.iter().any(|ratio| (ratio - 1.0).abs() > GOOD_ENOUGH);
+        if !corrections.iter().flatten().any(off) {
+            mesh.commit(checkpoint);
+            return false;
+        }
+        mesh.rollback(checkpoint);
+        for (i, correction) in corrections.iter().enumerate() {
+            let Some([width, extent]) = correction else { continue };
+            let mark = &self.selection.marks[i];
+            // The formula is affine in the width: what is missing is added, not multiplied.
+            let wanted = self.widths[i] + self.widths[i] * (width - 1.0) / width;
+            let fits = |width: f64| cuts(mesh, mark, profile, width).is_ok();
+            widths[i] = match cuts(mesh, mark, profile, wanted) {
+                Ok(_) => wanted,
+                Err(WidthError { low, high, .. }) => {
+                    // As near as the edge allows; the report says what was reached.
+                    let inside = wanted.clamp(low * (1.0 + 1e-9), high * (1.0 - 1e-9));
+                    if fits(inside) { inside } else { self.widths[i] }
+                }
+            };
+            extents[i] = self.extents[i] * extent;
+        }
+        true
+    }
+
+    /// Asked over reached width and extent per mark: measured, or the mean of the measured neighbours.
+    fn corrections(&self, pass: &Pass) -> Vec<Option<[f64; 2]>> {
+        let mut measured: Vec<Option<[f64; 2]>> = vec![None; self.selection.marks.len()];
+        let mut around: Vec<(f64, [f64; 2])> = vec![(0.0, [0.0; 2]); self.selection.marks.len()];
+        for (station, reached) in pass.stations.iter().zip(&pass.reached) {
+            let Some(reached) = reached else { continue };
+            let ratio = |asked: f64, reached: f64| {
+                let ratio = asked / reached;
+                if ratio.is_finite() {
+                    ratio.clamp(1.0 / LARGEST_CORRECTION, LARGEST_CORRECTION)
+                } else {
+                    1.0
+                }
+            };
+            let correction = [
+                ratio(self.widths[station.mark], reached.width),
+                ratio(self.extents[station.mark], reached.extent),
+            ];
+            measured[station.mark] = Some(correction);
+            for neighbour in station.neighbours {
+                let (count, sum) = &mut around[neighbour];
+                *count += 1.0;
+                sum[0] += correction[0];
+                sum[1] += correction[1];
+            }
+        }
+        measured
+            .into_iter()
+            .zip(around)
+            .map(|(own, (count, sum))| {
+                own.or_else(|| (count > 0.0).then(|| [sum[0] / count, sum[1] / count]))
+            })
+            .collect()
+    }
+
+    fn report(
+        &mut self,
+        mesh: &mut Mesh,
+        pass: Pass,
+        corrections: u32,
+        reference: Option<&deviation::Reference>,
+        walls: Option<&deviation::Walls>,
+        job: &Job,
+    ) -> Result<Report, FeatureError> {
+        job.step("report", 0.8)?;
+        let leftovers = self.settle(mesh);
+        let displaced = match reference {
+            Some(reference) if self.feature.profile.is_some() => {
+                Some(reference.difference(mesh, &pass.changed, job)?)
+            }
+            _ => None,
+        };
+        let mut warnings = Vec::new();
+        if !pass.folds.is_empty() {
+            warnings.push(Warning::Fold { vertices: pass.folds.clone() });
+        }
+        if let Some(walls) = walls {
+            warnings.extend(walls.warning(&pass.greens));
+        }
+        self.clock.lap("deviation");
+        let [vertices, edges, faces] = mesh.counts();
+        let mut new_valences = BTreeMap::new();
+        for v in (self.before.vertices..mesh.vertex_bound()).map(|v| VertexId(v as u32)) {
+            if mesh.has_vertex(v) {
+                *new_valences.entry(mesh.valence(v)).or_default() += 1;
+            }
+        }
+        let name = self.feature.profile.map_or(self.feature.rules.name(), |profile| profile.name);
+        Ok(Report {
+            feature: name.to_owned(),
+            before: self.before,
+            after: Counts { vertices, edges, faces },
+            marks: self.selection.marks.len(),
+            ends: self.selection.ends.clone(),
+            non_quads: pass
+                .changed
+                .iter()
+                .map(|&f| (f.0, mesh.arity(f)))
+                .filter(|&(_, arity)| arity != 4)
+                .collect(),
+            new_valences,
+            rules: pass.outcome.applications.clone(),
+            leftovers,
+            width: self.dimension("width", &self.widths, &pass, |reached| reached.width),
+            extent: self
+                .feature
+                .profile
+                .and_then(|p| self.dimension(p.extent, &self.extents, &pass, |reached| reached.extent)),
+            fit: pass.fit,
+            corrections,
+            fitted: pass.fitted,
+            displaced,
+            size: reference.map(|reference| reference.size()),
+            warnings,
+            green: pass.greens.iter().map(|green| green.vertex.0).collect(),
+            feature_edges: feature_edges(mesh, &pass.lines),
+            affected: affected_faces(mesh, &pass.changed).into_iter().map(|f| f.0).collect(),
+            times: self.clock.laps(),
+        })
+    }
+
+    fn dimension(
+        &self,
+        name: &str,
+        asked: &[f64],
+        pass: &Pass,
+        part: impl Fn(&Reached) -> f64,
+    ) -> Option<Dimension> {
+        let profile = self.feature.profile?;
+        let pairs: Vec<(f64, f64)> = pass
+            .stations
+            .iter()
+            .zip(&pass.reached)
+            .filter_map(|(station, reached)| Some((asked[station.mark], part(reached.as_ref()?))))
+            .collect();
+        if pairs.is_empty() {
+            return None;
+        }
+        let count = pairs.len() as f64;
+        let ratios = || pairs.iter().map(|(asked, reached)| reached / asked);
+        Some(Dimension {
+            asked: self.length(profile, name),
+            stations: pairs.len(),
+            asked_mean: pairs.iter().map(|pair| pair.0).sum::<f64>() / count,
+            reached_mean: pairs.iter().map(|pair| pair.1).sum::<f64>() / count,
+            worst_low: ratios().fold(f64::INFINITY, f64::min),
+            worst_high: ratios().fold(0.0, f64::max),
+        })
+    }
+
+    /// Turns what the rules left over into the attribute `unresolved`, and takes the working attributes away.
+    fn settle(&self, mesh: &mut Mesh) -> Vec<Leftover> {
+        let waiting = if self.feature.profile.is_some() { "places" } else { "color" };
+        let waiting = mesh.intern(waiting);
+        let mut half_edges: Vec<HalfEdgeId> =
+            mesh.nodes_with_attribute(Domain::HalfEdge, waiting).into_iter().map(HalfEdgeId).collect();
+        half_edges.retain(|&h| mesh.has_half_edge(h) && !mesh.face(h).is_boundary());
+        let unresolved = mesh.intern("unresolved");
+        let kind = mesh.intern(if self.feature.profile.is_some() { "kind" } else { "color" });
+        let mut marks: BTreeMap<FaceId, usize> = BTreeMap::new();
+        for &h in &half_edges {
+            *marks.entry(mesh.face(h)).or_default() += 1;
+            let kind = mesh.attribute(Node::HalfEdge(h), kind).cloned();
+            let kind = kind.unwrap_or_else(|| Value::text(mark::DEFAULT_KIND));
+            mesh.set_attribute(Node::HalfEdge(h), unresolved, Some(kind));
+        }
+        for (domain, names) in [
+            (Domain::HalfEdge, &["cuts", "mark", "places", "kind", "color", "t"][..]),
+            (Domain::Vertex, &["mark", "line", "cross", "hold"][..]),
+        ] {
+            for name in names {
+                let name = mesh.intern(name);
+                for id in mesh.nodes_with_attribute(domain, name) {
+                    mesh.set_attribute(Node::new(domain, id), name, None);
+                }
+            }
+        }
+        let span = mesh.intern("span");
+        for &h in &half_edges {
+            for to in mesh.links(Node::HalfEdge(h), span).to_vec() {
+                mesh.set_link(Node::HalfEdge(h), span, to, false);
+            }
+        }
+        marks
+            .into_iter()
+            .map(|(face, marks)| Leftover {
+                face: face.0,
+                vertices: mesh.face_vertices(face).map(|v| v.0).collect(),
+                marks,
+            })
+            .collect()
+    }
+}
+
+/// Faces whose limit surface can have changed: the surface of a face depends on the vertices of the faces around it,
+/// and the vertices of the faces around the changed ones may have moved.
+pub(super) fn affected_faces(mesh: &Mesh, changed: &[FaceId]) -> Vec<FaceId> {
+    let active = mesh.grow_faces(changed);
+    let moved = mesh.grow_faces(&active);
+    mesh.grow_faces(&moved)
+}
+
+/// Edges between vertices of one line, other than the pieces of marked edges.
+fn feature_edges(mesh: &Mesh, lines: &[LineVertex]) -> Vec<(u32, u32)> {
+    let of = |v: VertexId| lines.binary_search_by_key(&v, |entry| entry.vertex).ok().map(|i| &lines[i]);
+    let mut edges = Vec::new();
+    for a in lines {
+        for b in mesh.outgoing(a.vertex).filter_map(|h| of(mesh.target(h))) {
+            let pieces_of_one_mark = a.mark.is_some() && a.mark == b.mark;
+            if a.vertex < b.vertex && a.shares_line(b) && !pieces_of_one_mark {
+                edges.push((a.vertex.0, b.vertex.0));
+            }
+        }
+    }
+    edges
+}
+
+/// Time per stage, summed over passes.
+struct Clock {
+    last: Instant,
+    laps: Vec<(&'static str, f64)>,
+}
+
+impl Clock {
+    fn start() -> Self {
+        Self { last: Instant::now(), laps: Vec::new() }
+    }
+
+    fn lap(&mut self, stage: &'static str) {
+        let now = Instant::now();
+        let milliseconds = now.duration_since(self.last).as_secs_f64() * 1e3;
+        self.last = now;
+        match self.laps.iter_mut().find(|lap| lap.0 == stage) {
+            Some(lap) => lap.1 += milliseconds,
+            None => self.laps.push((stage, milliseconds)),
+        }
+    }
+
+    fn laps(&mut self) -> Vec<(&'static str, f64)> {
+        self.lap("report");
+        std::mem::take(&mut self.laps)
+    }
+}

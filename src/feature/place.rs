@@ -1,0 +1,81 @@
+//! Where the lines of a profile cross each marked edge.
+
+use super::profile::{Profile, full_width, half_width};
+use crate::mark::Mark;
+use crate::mesh::{HalfEdgeId, Mesh};
+use glam::DVec3;
+
+/// Least distance, as a fraction of the edge, that the lines keep from each other and from the edge's ends.
+const CLEARANCE: f64 = 0.01;
+/// Sines of the crossing angle below this are treated as this: the feature runs nearly along the edge.
+const LEAST_SINE: f64 = 0.1;
+
+/// A width that an edge cannot take. All lengths in model units.
+#[derive(Clone, PartialEq, Debug, thiserror::Error)]
+#[error(
+    "a width of {asked:.6} does not fit edge {},{} (length {length:.6}); it takes widths from {low:.6} to {high:.6}",
+    edge.0, edge.1
+)]
+pub struct WidthError {
+    /// The edge.
+    pub edge: (u32, u32),
+    /// Its length.
+    pub length: f64,
+    /// The width asked for.
+    pub asked: f64,
+    /// Least width.
+    pub low: f64,
+    /// Greatest width.
+    pub high: f64,
+}
+
+/// The direction in which a feature crosses the marked edge: along the sides of the faces beside it.
+///
+/// In each face the direction is between those of the two edges that leave the marked edge's ends, so that in a quad
+/// crossed straight it points to the opposite mark (JUNCTIONS.md, section 5 takes the angle from it).
+pub(super) fn band_direction(mesh: &Mesh, h: HalfEdgeId, t: f64) -> DVec3 {
+    let into_face = |h: HalfEdgeId, t: f64| {
+        if mesh.face(h).is_boundary() {
+            return DVec3::ZERO;
+        }
+        let at_source = mesh.position(mesh.source(mesh.prev(h))) - mesh.position(mesh.source(h));
+        let at_target = mesh.position(mesh.target(mesh.next(h))) - mesh.position(mesh.target(h));
+        at_source.lerp(at_target, t).normalize_or_zero()
+    };
+    (into_face(h, t) - into_face(h.mate(), 1.0 - t)).normalize_or_zero()
+}
+
+/// Sine of the angle between the feature and the marked edge.
+pub(super) fn crossing_sine(mesh: &Mesh, mark: &Mark) -> f64 {
+    let edge = mesh.position(mesh.target(mark.half_edge)) - mesh.position(mesh.source(mark.half_edge));
+    let direction = band_direction(mesh, mark.half_edge, mark.t);
+    if direction == DVec3::ZERO {
+        return 1.0;
+    }
+    edge.normalize_or_zero().cross(direction).length().clamp(LEAST_SINE, 1.0)
+}
+
+/// Places along the marked edge, increasing in (0, 1), for a limit surface `width` wide at half depth across the
+/// feature.
+///
+/// # Errors
+/// [`WidthError`] when the lines would come closer than 1 % of the edge to each other or to the edge's ends.
+pub(super) fn cuts(mesh: &Mesh, mark: &Mark, profile: &Profile, width: f64) -> Result<Vec<f64>, WidthError> {
+    let h = mark.half_edge;
+    let length = mesh.edge_length(h);
+    let sine = crossing_sine(mesh, mark);
+    let lowest = CLEARANCE * length;
+    let highest = (mark.t.min(1.0 - mark.t) - CLEARANCE) * length;
+    let half = half_width(width / sine, length);
+    // A zero-length edge fails here too.
+    if !(half >= lowest && half <= highest) {
+        return Err(WidthError {
+            edge: (mesh.source(h).0, mesh.target(h).0),
+            length,
+            asked: width,
+            low: sine * full_width(lowest, length),
+            high: sine * full_width(highest.max(0.0), length),
+        });
+    }
+    Ok(profile.lines.iter().map(|line| mark.t + line.across * half / length).collect())
+}

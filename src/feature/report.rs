@@ -1,0 +1,244 @@
+//! What a feature did, for people and programs.
+
+use super::length::Length;
+use crate::mark::StripEnd;
+use crate::mesh::{FaceId, Renumbering, VertexId};
+use crate::optimise::{FitReport, Stop};
+use crate::surface::Deviation;
+use serde::Serialize;
+use std::collections::BTreeMap;
+use std::fmt;
+
+/// Numbers of elements.
+#[derive(Clone, Copy, PartialEq, Eq, Default, Debug, Serialize)]
+pub struct Counts {
+    /// Vertices.
+    pub vertices: usize,
+    /// Edges.
+    pub edges: usize,
+    /// Faces.
+    pub faces: usize,
+}
+
+/// Asked and reached dimension over the straight stretches of a feature, in model units.
+#[derive(Clone, Copy, PartialEq, Debug, Serialize)]
+pub struct Dimension {
+    /// What was asked for, as given.
+    pub asked: Length,
+    /// Marked edges at which the band runs straight, where it was measured.
+    pub stations: usize,
+    /// Mean of what was asked for at those edges.
+    pub asked_mean: f64,
+    /// Mean of what was reached.
+    pub reached_mean: f64,
+    /// Least reached as a fraction of what was asked for.
+    pub worst_low: f64,
+    /// Greatest reached as a fraction of what was asked for.
+    pub worst_high: f64,
+}
+
+/// A face that no rule could handle.
+#[derive(Clone, PartialEq, Eq, Debug, Serialize)]
+pub struct Leftover {
+    /// The face, in the numbering of the result.
+    pub face: u32,
+    /// Its vertices.
+    pub vertices: Vec<u32>,
+    /// How many marked edges it has.
+    pub marks: usize,
+}
+
+/// Something the user should look at.
+#[derive(Clone, PartialEq, Debug, Serialize)]
+#[serde(rename_all = "snake_case", tag = "kind")]
+pub enum Warning {
+    /// The normal of the limit surface turned over at these vertices: the feature is too deep for the curvature.
+    Fold {
+        /// Vertices in the numbering of the result.
+        vertices: Vec<u32>,
+    },
+    /// The feature is deeper than the material: the opposite wall is closer than the depth.
+    Wall {
+        /// The thinnest place, in model units.
+        thickness: f64,
+        /// The depth asked for there.
+        depth: f64,
+        /// The vertex in the numbering of the result.
+        vertex: u32,
+    },
+}
+
+impl fmt::Display for Warning {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Fold { vertices } => write!(
+                f,
+                "the limit surface folds at {} vertices (first: {}); ask for less depth or more width",
+                vertices.len(),
+                vertices.first().copied().unwrap_or_default()
+            ),
+            Self::Wall { thickness, depth, vertex } => write!(
+                f,
+                "a depth of {depth:.6} exceeds the wall, which is {thickness:.6} thick at vertex {vertex}"
+            ),
+        }
+    }
+}
+
+/// How far two limit surfaces are apart, over everything near the feature and outside its footprint.
+#[derive(Clone, PartialEq, Debug, Serialize)]
+pub struct Difference {
+    /// Over all faces whose limit surface can have changed.
+    pub total: Deviation,
+    /// Without the footprint: the faces the band crosses and the faces around them.
+    pub outside: Deviation,
+}
+
+/// The report of a feature. Ids are those of the result.
+#[derive(Clone, PartialEq, Debug, Serialize)]
+pub struct Report {
+    /// Name of the feature or of the rule file.
+    pub feature: String,
+    /// Elements before.
+    pub before: Counts,
+    /// Elements after.
+    pub after: Counts,
+    /// Marked edges.
+    pub marks: usize,
+    /// Where rings stopped before they closed.
+    pub ends: Vec<StripEnd>,
+    /// Faces of the result that are no quads, among those the rules made or changed: (face, edges).
+    pub non_quads: Vec<(u32, usize)>,
+    /// Valences of the new vertices: valence -> how many.
+    pub new_valences: BTreeMap<usize, usize>,
+    /// Applications of each rule, in the order of the file.
+    pub rules: Vec<(String, u64)>,
+    /// Faces that no rule could handle.
+    pub leftovers: Vec<Leftover>,
+    /// What the optimiser did.
+    pub fit: FitReport,
+    /// Width asked and reached.
+    pub width: Option<Dimension>,
+    /// Depth or height asked and reached.
+    pub extent: Option<Dimension>,
+    /// Corrections of width and depth after a first measurement.
+    pub corrections: u32,
+    /// Deviation after the fit, before displacement; `None` unless asked for.
+    pub fitted: Option<Difference>,
+    /// Deviation of the result; `None` unless asked for.
+    pub displaced: Option<Difference>,
+    /// Diagonal of the bounding box that relative figures refer to, when deviations were asked for.
+    pub size: Option<f64>,
+    /// What to look at.
+    pub warnings: Vec<Warning>,
+    /// Vertices that were displaced, in the numbering of the result.
+    pub green: Vec<u32>,
+    /// Edges along the lines of the feature, for figures.
+    #[serde(skip)]
+    pub feature_edges: Vec<(u32, u32)>,
+    /// Faces whose limit surface can differ from what it was, ascending.
+    #[serde(skip)]
+    pub affected: Vec<u32>,
+    /// Time per stage in milliseconds, in order. Left out when results are compared.
+    pub times: Vec<(&'static str, f64)>,
+}
+
+impl Report {
+    /// Follows a compaction of the mesh.
+    pub(super) fn renumber(&mut self, map: &Renumbering) {
+        let vertex = |v: u32| map.vertex(VertexId(v)).map(|v| v.0);
+        let face = |f: u32| map.face(FaceId(f)).map(|f| f.0);
+        let vertices = |ids: &mut Vec<u32>| *ids = ids.iter().filter_map(|&v| vertex(v)).collect();
+        vertices(&mut self.green);
+        self.feature_edges =
+            self.feature_edges.iter().filter_map(|&(a, b)| Some((vertex(a)?, vertex(b)?))).collect();
+        self.affected = self.affected.iter().filter_map(|&f| face(f)).collect();
+        vertices(&mut self.fit.missed);
+        self.non_quads.retain_mut(|entry| face(entry.0).map(|f| entry.0 = f).is_some());
+        for leftover in &mut self.leftovers {
+            leftover.face = face(leftover.face).unwrap_or(leftover.face);
+            vertices(&mut leftover.vertices);
+        }
+        for warning in &mut self.warnings {
+            match warning {
+                Warning::Fold { vertices: ids } => vertices(ids),
+                Warning::Wall { vertex: v, .. } => *v = vertex(*v).unwrap_or(*v),
+            }
+        }
+    }
+}
+
+impl fmt::Display for Report {
+    /// The report as a person reads it.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Counts { vertices, faces, .. } = self.after;
+        writeln!(
+            f,
+            "{}: {} marked edges; {} vertices (+{}), {} faces (+{})",
+            self.feature,
+            self.marks,
+            vertices,
+            vertices as i64 - self.before.vertices as i64,
+            faces,
+            faces as i64 - self.before.faces as i64
+        )?;
+        let rules: Vec<String> =
+            self.rules.iter().filter(|r| r.1 > 0).map(|(name, count)| format!("{name} {count}")).collect();
+        writeln!(f, "rules: {}", if rules.is_empty() { "none applied".into() } else { rules.join(", ") })?;
+        for (name, dimension) in [("width", &self.width), ("extent", &self.extent)] {
+            if let Some(d) = dimension {
+                writeln!(
+                    f,
+                    "{name}: asked {}, reached {:.6} of {:.6} in the mean ({:+.2} % to {:+.2} %, {} places)",
+                    d.asked,
+                    d.reached_mean,
+                    d.asked_mean,
+                    100.0 * (d.worst_low - 1.0),
+                    100.0 * (d.worst_high - 1.0),
+                    d.stations
+                )?;
+            }
+        }
+        writeln!(
+            f,
+            "fit: {}, {} active vertices, {} steps, {}, residual {:.1e}",
+            self.fit.method.name(),
+            self.fit.active,
+            self.fit.steps,
+            match self.fit.stop {
+                Stop::Nothing => "nothing to do",
+                Stop::Converged => "converged",
+                Stop::StepLimit => "step limit reached",
+            },
+            self.fit.residual
+        )?;
+        if !self.fit.missed.is_empty() {
+            writeln!(f, "fit: {} vertices found no surface to fit to", self.fit.missed.len())?;
+        }
+        for (name, difference) in [("before displacement", &self.fitted), ("result", &self.displaced)] {
+            if let Some(d) = difference {
+                writeln!(
+                    f,
+                    "deviation, {name}: max {:.3e}, rms {:.3e}; outside of the footprint max {:.3e}, rms {:.3e}",
+                    d.total.max, d.total.rms, d.outside.max, d.outside.rms
+                )?;
+            }
+        }
+        for end in &self.ends {
+            writeln!(f, "note: {end}")?;
+        }
+        for leftover in &self.leftovers {
+            writeln!(
+                f,
+                "unresolved: face {} with {} edges and {} marked sides; no rule handles it",
+                leftover.face,
+                leftover.vertices.len(),
+                leftover.marks
+            )?;
+        }
+        for warning in &self.warnings {
+            writeln!(f, "warning: {warning}")?;
+        }
+        Ok(())
+    }
+}

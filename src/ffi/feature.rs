@@ -1,0 +1,316 @@
+//! Features: the whole job in one call, and its stages one by one.
+
+use super::arguments::{self, Output};
+use super::boundary::boundary;
+use super::error::WeltError;
+use super::failure::Failure;
+use super::job::WeltJob;
+use super::mesh::{WeltMesh, mesh_of};
+use super::options::{self, Options};
+use super::report::WeltReport;
+use super::rules::WeltRules;
+use super::selection::WeltSelection;
+use crate::feature::{self, Feature, PROFILES, Profile};
+use crate::job::Job;
+use crate::mesh::VertexId;
+use crate::optimise::Method;
+use std::ffi::c_char;
+
+/// Leave vertices where the rules put them.
+pub const WELT_FIT_NONE: u32 = 0;
+/// The iteration of Thaller, Augsdoerfer and Fellner 2016, section 5.3.
+pub const WELT_FIT_LOOP: u32 = 1;
+/// The sparse system which that iteration converges to.
+pub const WELT_FIT_SOLVE: u32 = 2;
+
+pub(super) fn method(number: u32) -> Result<Method, Failure> {
+    match number {
+        WELT_FIT_NONE => Ok(Method::None),
+        WELT_FIT_LOOP => Ok(Method::Loop),
+        WELT_FIT_SOLVE => Ok(Method::Solve),
+        _ => Err(Failure::argument(format!("the fit is {number}, which is no WELT_FIT_*"))),
+    }
+}
+
+/// How a feature is applied. Set it by welt_feature_options_init, then change what differs.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct WeltFeatureOptions {
+    /// Set by welt_feature_options_init; leave it.
+    pub struct_size: u32,
+    /// How the changed mesh is fitted to the surface as it was: one of WELT_FIT_*. Default WELT_FIT_SOLVE.
+    pub fit: u32,
+    /// Not 0: measure deviations and look for thin walls; costs more than the feature. Default 0.
+    pub deviation: u32,
+    /// Leave it 0.
+    pub reserved: u32,
+}
+
+// SAFETY: `repr(C)`, four integers of four bytes.
+unsafe impl Options for WeltFeatureOptions {
+    fn first_size() -> usize {
+        16
+    }
+
+    fn defaults(struct_size: u32) -> Self {
+        Self { struct_size, fit: WELT_FIT_SOLVE, deviation: 0, reserved: 0 }
+    }
+}
+
+/// Sets options to their defaults. options: must not be NULL. size: sizeof *options. Fails with WELT_ERROR_ARGUMENT where the
+/// size is none that the library knows. Since: 0.1.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn welt_feature_options_init(options: *mut WeltFeatureOptions, size: usize) -> i32 {
+    // SAFETY: the header asks for NULL or a struct of this size; no error is wanted.
+    unsafe { boundary(std::ptr::null_mut(), || options::initialise(options, size)) }
+}
+
+/// Lists the features that welt_feature_apply knows.
+///
+/// list: receives a report whose JSON is an array of features, each with name, help and parameters (name, default, help);
+/// free it with welt_report_free.
+///
+/// Since: 0.1.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn welt_feature_list(list: *mut *mut WeltReport, error: *mut *mut WeltError) -> i32 {
+    let body = || {
+        // SAFETY: the header asks for a place for the handle.
+        let output = unsafe { Output::new(list, "list") }?;
+        output.handle(WeltReport::new(&PROFILES)?);
+        Ok(())
+    };
+    // SAFETY: the header asks for NULL or a place for an error.
+    unsafe { boundary(error, body) }
+}
+
+/// Settings `NAME=VALUE`, separated by blanks.
+fn read_options(
+    text: &str,
+    options: WeltFeatureOptions,
+    for_rules: bool,
+) -> Result<feature::Options, Failure> {
+    let mut read = feature::Options {
+        method: method(options.fit)?,
+        deviation: options.deviation != 0,
+        ..feature::Options::default()
+    };
+    for setting in text.split_whitespace() {
+        read.set(setting, for_rules)?;
+    }
+    Ok(read)
+}
+
+/// What both ways of applying share.
+///
+/// # Safety
+/// The pointers are as the header asks.
+#[allow(clippy::too_many_arguments)]
+unsafe fn apply(
+    mesh: *mut WeltMesh,
+    selection: *const WeltSelection,
+    feature: &Feature,
+    settings: *const c_char,
+    settings_length: usize,
+    options: *const WeltFeatureOptions,
+    job: *const WeltJob,
+    report: *mut *mut WeltReport,
+) -> Result<(), Failure> {
+    // SAFETY: as for this function.
+    let (mesh, selection, text, options, job, report) = unsafe {
+        (
+            arguments::handle_mut(mesh, "mesh")?,
+            arguments::handle(selection, "selection")?,
+            if settings.is_null() { "" } else { arguments::text(settings, settings_length, "settings")? },
+            options::complete(options)?,
+            arguments::optional(job, "job")?,
+            Output::optional(report, "report")?,
+        )
+    };
+    let options = read_options(text, options, feature.profile.is_none())?;
+    let idle = Job::new();
+    let job = job.map_or(&idle, |job| &job.job);
+    let done = mesh.change(|mesh| Ok(feature::apply(mesh, &selection.selection, feature, &options, job)?))?;
+    if let Some(report) = report {
+        report.handle(WeltReport::new(&done)?);
+    }
+    Ok(())
+}
+
+/// Applies a feature: rewrites the mesh along the marked edges, fits it to the surface as it was, displaces it to the asked
+/// width and depth.
+///
+/// mesh: is changed; vertices keep their numbers, new ones follow.
+/// selection: the marked edges, made on this mesh.
+/// name: the feature, one that welt_feature_list lists, such as groove.
+/// name_length: in bytes, SIZE_MAX for a NUL-terminated name.
+/// settings: may be NULL; NAME=VALUE, separated by blanks, such as "width=0.2 depth=30%": model units, or a percentage of
+/// the length of the marked edge.
+/// settings_length: in bytes, SIZE_MAX for a NUL-terminated text.
+/// options: may be NULL for defaults.
+/// job: may be NULL.
+/// report: may be NULL; else receives what was done: counts, rules, leftovers, width and depth asked and reached,
+/// deviations, warnings. Free it with welt_report_free.
+///
+/// Fails with WELT_ERROR_ARGUMENT (an unknown feature or setting, a width that an edge cannot take), WELT_ERROR_RULE,
+/// WELT_ERROR_CANCELLED; the mesh is as it was before then. Since: 0.1.
+#[unsafe(no_mangle)]
+#[allow(clippy::too_many_arguments)]
+pub unsafe extern "C" fn welt_feature_apply(
+    mesh: *mut WeltMesh,
+    selection: *const WeltSelection,
+    name: *const c_char,
+    name_length: usize,
+    settings: *const c_char,
+    settings_length: usize,
+    options: *const WeltFeatureOptions,
+    job: *const WeltJob,
+    report: *mut *mut WeltReport,
+    error: *mut *mut WeltError,
+) -> i32 {
+    let body = || {
+        // SAFETY: the header asks for a string of this length.
+        let name = unsafe { arguments::text(name, name_length, "name") }?;
+        let profile = Profile::named(name).ok_or_else(|| {
+            let known: Vec<&str> = PROFILES.iter().map(|profile| profile.name).collect();
+            Failure::argument(format!("there is no feature '{name}'; there are {}", known.join(", ")))
+        })?;
+        let rules = feature::linear_rules()?;
+        let feature = Feature { rules: &rules, profile: Some(profile) };
+        // SAFETY: the header asks for what `apply` asks for.
+        unsafe { apply(mesh, selection, &feature, settings, settings_length, options, job, report) }
+    };
+    // SAFETY: the header asks for NULL or a place for an error.
+    unsafe { boundary(error, body) }
+}
+
+/// Runs a rule set on the marked edges and fits the changed mesh to the surface as it was; nothing is displaced.
+///
+/// mesh, selection, options, job, report: as for welt_feature_apply.
+/// rules: must not be NULL.
+/// settings: may be NULL; NAME=VALUE with numbers, separated by blanks, for parameters of the rules.
+/// settings_length: in bytes, SIZE_MAX for a NUL-terminated text.
+///
+/// Fails as welt_feature_apply does. Since: 0.1.
+#[unsafe(no_mangle)]
+#[allow(clippy::too_many_arguments)]
+pub unsafe extern "C" fn welt_rules_apply(
+    mesh: *mut WeltMesh,
+    selection: *const WeltSelection,
+    rules: *const WeltRules,
+    settings: *const c_char,
+    settings_length: usize,
+    options: *const WeltFeatureOptions,
+    job: *const WeltJob,
+    report: *mut *mut WeltReport,
+    error: *mut *mut WeltError,
+) -> i32 {
+    let body = || {
+        // SAFETY: the header asks for living rules.
+        let rules = unsafe { arguments::handle(rules, "rules") }?;
+        let feature = Feature { rules: &rules.rules, profile: None };
+        // SAFETY: the header asks for what `apply` asks for.
+        unsafe { apply(mesh, selection, &feature, settings, settings_length, options, job, report) }
+    };
+    // SAFETY: the header asks for NULL or a place for an error.
+    unsafe { boundary(error, body) }
+}
+
+/// Displaces vertices along the normals of the limit surface, so that their limit points rise by the given heights, all
+/// together.
+///
+/// mesh: is changed.
+/// vertices: the vertices, each once.
+/// heights: how far the limit point of each rises, in model units; negative is inwards.
+/// count: number of vertices and of heights.
+///
+/// Fails with WELT_ERROR_ARGUMENT where a vertex does not exist, or has no normal (the places list them), or a height is not
+/// finite; the mesh is as it was before then. Since: 0.1.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn welt_mesh_displace(
+    mesh: *mut WeltMesh,
+    vertices: *const u32,
+    heights: *const f64,
+    count: usize,
+    error: *mut *mut WeltError,
+) -> i32 {
+    let body = || {
+        // SAFETY: the header asks for arrays of this count.
+        let (vertices, heights) = unsafe {
+            (arguments::array(vertices, count, "vertices")?, arguments::array(heights, count, "heights")?)
+        };
+        // SAFETY: the header asks for a living mesh that nobody else uses.
+        let mesh = unsafe { arguments::handle_mut(mesh, "mesh") }?;
+        let checked = mesh.read()?;
+        let mut seen = std::collections::BTreeSet::new();
+        for (&v, height) in vertices.iter().zip(heights) {
+            if !checked.has_vertex(VertexId(v)) {
+                return Err(Failure::argument(format!("vertex {v} does not exist")));
+            }
+            if !seen.insert(v) {
+                return Err(Failure::argument(format!("vertex {v} is named twice")));
+            }
+            if !height.is_finite() {
+                return Err(Failure::argument(format!("the height of vertex {v} is not a finite number")));
+            }
+        }
+        let heights: Vec<(VertexId, f64)> =
+            vertices.iter().map(|&v| VertexId(v)).zip(heights.iter().copied()).collect();
+        mesh.change(|mesh| {
+            let checkpoint = mesh.begin();
+            let left_out = feature::raise(mesh, &heights);
+            if left_out.is_empty() {
+                mesh.commit(checkpoint);
+                return Ok(());
+            }
+            mesh.rollback(checkpoint);
+            let place = |v: &VertexId| super::failure::Place::vertex(v.0, "the surface has no normal here");
+            Err(Failure {
+                places: left_out.iter().map(place).collect(),
+                ..Failure::argument(format!("{} vertices have no normal to rise along", left_out.len()))
+            })
+        })
+    };
+    // SAFETY: the header asks for NULL or a place for an error.
+    unsafe { boundary(error, body) }
+}
+
+/// Measures how far the limit surfaces of two control meshes are apart, both ways.
+///
+/// first, second: must not be NULL.
+/// samples: samples per side of each face, 1 to 64; 8 is usual.
+/// values: receives the largest distance, the root mean square and the distance that 95 % of the area do not exceed, in
+/// model units: 3 doubles.
+/// job: may be NULL.
+///
+/// Since: 0.1.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn welt_mesh_deviation(
+    first: *const WeltMesh,
+    second: *const WeltMesh,
+    samples: u32,
+    values: *mut f64,
+    job: *const WeltJob,
+    error: *mut *mut WeltError,
+) -> i32 {
+    let body = || {
+        // SAFETY: the header asks for living meshes, a job or NULL, and room for three doubles.
+        let (first, second, job, values) = unsafe {
+            (
+                mesh_of(first)?,
+                mesh_of(second)?,
+                arguments::optional(job, "job")?,
+                arguments::Buffer::new(values, 3, 3, "values")?,
+            )
+        };
+        if !(1..=64).contains(&samples) {
+            return Err(Failure::argument(format!("samples is {samples}; it lies between 1 and 64")));
+        }
+        let idle = Job::new();
+        let job = job.map_or(&idle, |job| &job.job);
+        let found = crate::surface::compare(first, second, samples as usize, job)?.both;
+        values.fill([found.max, found.rms, found.p95]);
+        Ok(())
+    };
+    // SAFETY: the header asks for NULL or a place for an error.
+    unsafe { boundary(error, body) }
+}

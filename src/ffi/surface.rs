@@ -1,0 +1,206 @@
+//! `welt_surface`.
+
+use super::arguments::{self, Buffer, Output};
+use super::boundary::boundary;
+use super::error::WeltError;
+use super::failure::Failure;
+use super::feature::method;
+use super::job::WeltJob;
+use super::mesh::{WeltMesh, mesh_of};
+use super::report::WeltReport;
+use crate::job::Job;
+use crate::mesh::{FaceId, VertexId};
+use crate::optimise::{self, Target};
+use crate::subdivision::SurfacePoint;
+use glam::DVec3;
+
+/// A limit surface, frozen: it stays as it is when its mesh changes. Never changes.
+pub struct WeltSurface {
+    target: Target,
+}
+
+/// Freezes the limit surface of a mesh.
+///
+/// mesh: must not be NULL.
+/// faces: the faces whose surface is frozen; NULL for all. Cost follows their number.
+/// count: number of faces; 0 where faces is NULL.
+/// surface: receives the handle; free it with welt_surface_free.
+///
+/// Since: 0.1.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn welt_surface_create(
+    mesh: *const WeltMesh,
+    faces: *const u32,
+    count: usize,
+    surface: *mut *mut WeltSurface,
+    error: *mut *mut WeltError,
+) -> i32 {
+    let body = || {
+        // SAFETY: the header asks for a living mesh, an array of this count and a place for the handle.
+        let (mesh, output) = unsafe { (mesh_of(mesh)?, Output::new(surface, "surface")?) };
+        let faces: Vec<FaceId> = if faces.is_null() {
+            mesh.faces().collect()
+        } else {
+            // SAFETY: as above.
+            unsafe { arguments::array(faces, count, "faces") }?.iter().map(|&f| FaceId(f)).collect()
+        };
+        if let Some(missing) = faces.iter().find(|f| f.is_boundary() || !mesh.has_face(**f)) {
+            return Err(Failure::argument(format!("face {} does not exist", missing.0)));
+        }
+        output.handle(WeltSurface { target: Target::freeze(mesh, &faces) });
+        Ok(())
+    };
+    // SAFETY: the header asks for NULL or a place for an error.
+    unsafe { boundary(error, body) }
+}
+
+/// Frees a surface. NULL is allowed. Since: 0.1.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn welt_surface_free(surface: *mut WeltSurface) {
+    // SAFETY: the header asks for NULL or a surface that was not freed.
+    unsafe { arguments::free(surface) };
+}
+
+/// Evaluates the limit surface at parameters of faces.
+///
+/// surface: must not be NULL.
+/// faces: the face of each point.
+/// corners: the patch of each point; NULL for 0 everywhere. A quad has patch 0 only, another face one per corner.
+/// parameters: u and v of each point, in [0, 1]; what lies outside is moved to the nearest inside. On a quad (0, 0) is its
+/// first corner, u runs along the first edge and v against the last one. On patch c of another face (0, 0) is corner c,
+/// (1, 0) the middle of the edge that leaves it, (0, 1) that of the edge that arrives, (1, 1) the face point.
+/// count: number of points.
+/// values: receives per point the position, the derivatives by u and by v, and those by u twice, by u and v, by v twice: 18
+/// doubles. At an extraordinary vertex the first derivatives are tangents of conventional length, and the second ones,
+/// which are not defined, are NaN. Where the surface has no part of the face, which may not have been frozen or is a hole
+/// or left out by the boundary rule, all are NaN.
+/// capacity: room in values, at least 18 * count doubles.
+///
+/// Fails with WELT_ERROR_ARGUMENT where a face has no such patch, or a parameter is NaN. Since: 0.1.
+#[unsafe(no_mangle)]
+#[allow(clippy::too_many_arguments)]
+pub unsafe extern "C" fn welt_surface_evaluate(
+    surface: *const WeltSurface,
+    faces: *const u32,
+    corners: *const u32,
+    parameters: *const f64,
+    count: usize,
+    values: *mut f64,
+    capacity: usize,
+    error: *mut *mut WeltError,
+) -> i32 {
+    let body = || {
+        let too_large = || Failure::argument(format!("count is {count}, which is too large"));
+        let needed = count.checked_mul(18).ok_or_else(too_large)?;
+        // SAFETY: the header asks for a living surface, arrays of this count and a buffer of this capacity.
+        let (surface, faces, parameters, buffer) = unsafe {
+            (
+                arguments::handle(surface, "surface")?,
+                arguments::array(faces, count, "faces")?,
+                arguments::array(parameters, 2 * count, "parameters")?,
+                Buffer::new(values, capacity, needed, "values")?,
+            )
+        };
+        let corners = if corners.is_null() {
+            &[]
+        } else {
+            // SAFETY: not NULL; the header asks for an array of this count.
+            unsafe { arguments::array(corners, count, "corners") }?
+        };
+        let surface = &surface.target.surface;
+        let mut found = Vec::with_capacity(count);
+        for (i, (&face, uv)) in faces.iter().zip(parameters.chunks_exact(2)).enumerate() {
+            let corner = corners.get(i).copied().unwrap_or(0) as usize;
+            let patches = surface.patch_count(FaceId(face));
+            if patches > 0 && corner >= patches {
+                return Err(Failure::argument(format!("face {face} has no patch {corner}")));
+            }
+            if uv.iter().any(|parameter| parameter.is_nan()) {
+                return Err(Failure::argument(format!("a parameter of point {i} is NaN")));
+            }
+            found.push(jet(surface.evaluate(FaceId(face), corner, uv[0], uv[1])));
+        }
+        buffer.fill(found.iter().flatten().flat_map(|vector| vector.to_array()));
+        Ok(())
+    };
+    // SAFETY: the header asks for NULL or a place for an error.
+    unsafe { boundary(error, body) }
+}
+
+/// Position, first and second derivatives; NaN for what is not defined.
+fn jet(point: Option<SurfacePoint>) -> [DVec3; 6] {
+    let nowhere = DVec3::NAN;
+    point.map_or([nowhere; 6], |point| {
+        let [uu, uv, vv] = point.second.map_or([nowhere; 3], |second| [second.uu, second.uv, second.vv]);
+        [point.position, point.du, point.dv, uu, uv, vv]
+    })
+}
+
+/// Moves vertices so that their limit points lie on a frozen surface.
+///
+/// mesh: is changed.
+/// vertices: the vertices that may move; NULL for all.
+/// count: number of vertices; 0 where vertices is NULL.
+/// surface: must not be NULL.
+/// fit: one of WELT_FIT_*.
+/// job: may be NULL.
+/// report: may be NULL; else receives method, steps, stop reason, residual and the vertices that found no surface. Free it
+/// with welt_report_free.
+///
+/// Fails with WELT_ERROR_ARGUMENT and WELT_ERROR_CANCELLED; the mesh is as it was before then. Since: 0.1.
+#[unsafe(no_mangle)]
+#[allow(clippy::too_many_arguments)]
+pub unsafe extern "C" fn welt_mesh_fit(
+    mesh: *mut WeltMesh,
+    vertices: *const u32,
+    count: usize,
+    surface: *const WeltSurface,
+    fit: u32,
+    job: *const WeltJob,
+    report: *mut *mut WeltReport,
+    error: *mut *mut WeltError,
+) -> i32 {
+    let body = || {
+        // SAFETY: the header asks for these handles, a place for a report or NULL, and an array of this count.
+        let (mesh, surface, job, report, named) = unsafe {
+            (
+                arguments::handle_mut(mesh, "mesh")?,
+                arguments::handle(surface, "surface")?,
+                arguments::optional(job, "job")?,
+                Output::optional(report, "report")?,
+                if vertices.is_null() { None } else { Some(arguments::array(vertices, count, "vertices")?) },
+            )
+        };
+        let method = method(fit)?;
+        let mut active: Vec<VertexId> = match named {
+            Some(vertices) => vertices.iter().map(|&v| VertexId(v)).collect(),
+            None => mesh.read()?.vertices().collect(),
+        };
+        active.sort_unstable();
+        active.dedup();
+        if let Some(missing) = active.iter().find(|&&v| !mesh.read().is_ok_and(|mesh| mesh.has_vertex(v))) {
+            return Err(Failure::argument(format!("vertex {} does not exist", missing.0)));
+        }
+        let idle = Job::new();
+        let job = job.map_or(&idle, |job| &job.job);
+        let done = mesh.change(|mesh| {
+            let checkpoint = mesh.begin();
+            match optimise::fit(mesh, &active, &surface.target, method, job) {
+                Ok(done) => {
+                    mesh.commit(checkpoint);
+                    Ok(done)
+                }
+                Err(cancelled) => {
+                    mesh.rollback(checkpoint);
+                    Err(cancelled.into())
+                }
+            }
+        })?;
+        if let Some(report) = report {
+            report.handle(WeltReport::new(&done)?);
+        }
+        Ok(())
+    };
+    // SAFETY: the header asks for NULL or a place for an error.
+    unsafe { boundary(error, body) }
+}
