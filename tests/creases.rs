@@ -162,6 +162,16 @@ fn limits_are_the_same_on_every_level_and_at_patch_corners() {
                 sharp += usize::from(mesh.has_sharpness());
             }
         }
+        let finer =
+            Mesh::from_polygons(&refined.polygons(1, refined.positions(1, &control))).expect("a level");
+        for v in mesh.vertices() {
+            let off = limit_position(&finer, v).distance(limit_position(&mesh, v)) / size;
+            assert!(off < 1e-13, "{name} vertex {}: {off:e}", v.0);
+        }
+        let parts = |mesh: &Mesh| {
+            mesh.faces().filter(|&face| has_limit(mesh, face)).map(|f| mesh.arity(f)).sum::<usize>()
+        };
+        assert_eq!(4 * parts(&mesh), parts(&finer), "{name}");
         for face in mesh.faces().filter(|&face| has_limit(&mesh, face)) {
             let arity = mesh.arity(face);
             for (i, v) in mesh.face_vertices(face).enumerate() {

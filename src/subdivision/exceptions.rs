@@ -83,6 +83,16 @@ impl LevelSharpness {
         Self { edges: edges.collect(), vertices: vertices.filter(|entry| entry.1 > 0.0).collect() }
     }
 
+    /// Sharp edges, by their vertices.
+    pub(super) fn creases(&self) -> impl Iterator<Item = (u32, u32, f32)> {
+        self.edges.iter().map(|edge| (edge.ends[0], edge.ends[1], edge.sharpness))
+    }
+
+    /// Sharp vertices.
+    pub(super) fn corners(&self) -> impl Iterator<Item = (u32, f32)> {
+        self.vertices.iter().copied()
+    }
+
     /// Sharp spokes of the vertices that have something sharp besides the boundary, by vertex.
     fn spokes(&self, level: &Level) -> Vec<(u32, SmallVec<[Spoke; 4]>)> {
         let ends = self.edges.iter().zip(0..).flat_map(|(edge, index)| {

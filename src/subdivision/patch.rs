@@ -29,6 +29,7 @@ pub(crate) enum Patch {
 }
 
 /// What a quad is.
+#[expect(clippy::large_enum_variant, reason = "it lives for one call")]
 enum Class {
     Regular(Bicubic),
     Corner(Corner),
@@ -90,7 +91,7 @@ fn classify(ring: &Ring, child: bool) -> Class {
     if ring.is_semi_sharp() {
         return Class::Split;
     }
-    let sectors = ring.clone().sectors();
+    let sectors = ring.sectors();
     if let Some(grid) = sectors.regular_grid() {
         return Class::Regular(Bicubic::from_bspline(&grid));
     }

@@ -11,6 +11,7 @@ use super::sharpness::{Around, Values, is_semi_sharp};
 use crate::mesh::{Creasing, FaceId, HalfEdgeId, Mesh};
 use glam::DVec3;
 use smallvec::{SmallVec, smallvec};
+use std::borrow::Cow;
 
 /// A face of a fan, seen from the fan's vertex.
 #[derive(Clone, Copy, Debug)]
@@ -301,13 +302,12 @@ impl Ring {
     }
 
     /// The ring cut down to what the surface of the face depends on. Nothing may be semi-sharp.
-    pub(crate) fn sectors(mut self) -> Self {
-        for fan in &mut self.fans {
-            if fan.around.is_some() {
-                *fan = fan.sector();
-            }
+    pub(crate) fn sectors(&self) -> Cow<'_, Self> {
+        if self.fans.iter().all(|fan| fan.around.is_none()) {
+            return Cow::Borrowed(self);
         }
-        self
+        let fans = self.fans.iter().map(Fan::sector).collect();
+        Cow::Owned(Self { fans, centre: self.centre, creasing: self.creasing })
     }
 
     /// The control grid of a face whose limit is a single bicubic patch: a quad with only regular corners and
