@@ -809,6 +809,41 @@ int32_t welt_refinement_face_parents(const welt_refinement *refinement,
                                      welt_error **error);
 
 /*
+ Refines a triangle mesh by Loop's rules, with its sharpness and options.
+
+ mesh: must not be NULL.
+ levels: how often; each time one triangle becomes four.
+ refined: receives the last level, another control mesh of the same surface: it has the sharpness that is left, and holes
+ where the mesh has no surface. Free it with welt_mesh_free.
+
+ At each step the vertices are those of the vertices, then those of the edges in the order of welt_mesh_edges; faces 4 f to
+ 4 f + 2 lie at the corners of face f, and 4 f + 3 is the one in its middle. Fails with WELT_ERROR_MESH where a face is
+ no triangle and with WELT_ERROR_TOO_LARGE. Since: 0.1.
+ */
+WELT_API
+int32_t welt_mesh_refine_loop(const welt_mesh *mesh,
+                              uint32_t levels,
+                              welt_mesh **refined,
+                              welt_error **error);
+
+/*
+ Writes the point and the unit normal of the Loop limit surface at each vertex of a triangle mesh.
+
+ mesh: must not be NULL.
+ positions: receives x, y and z of each point.
+ normals: receives x, y and z of each normal, outwards; (0, 0, 0) where there is none. NULL where they are not wanted.
+ capacity: room in each of both, at least 3 * welt_mesh_vertex_count(mesh) doubles.
+
+ Fails with WELT_ERROR_MESH where a face is no triangle. Since: 0.1.
+ */
+WELT_API
+int32_t welt_mesh_loop_limit(const welt_mesh *mesh,
+                             double *positions,
+                             double *normals,
+                             size_t capacity,
+                             welt_error **error);
+
+/*
  Finds the edges that selectors name.
 
  mesh: must not be NULL.

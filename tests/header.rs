@@ -52,6 +52,7 @@ fn header_is_up_to_date() {
         "file",
         "limit",
         "refinement",
+        "loop_surface",
         "selection",
         "rules",
         "feature",

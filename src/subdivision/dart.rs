@@ -49,7 +49,17 @@ impl DartMasks {
                 faces: (0..faces).map(|i| scale * (at(i) + at(i + 1))).collect(),
             }
         };
-        let position = converged(smooth, &once);
+        Self::converged(smooth, [wave(&f64::cos), wave(&f64::sin)], &once)
+    }
+
+    /// The masks that refinement `once` leaves as they are but for a factor, from those of the smooth vertex, of which
+    /// the tangent across the crease is one already.
+    pub(super) fn converged(
+        position: RingMask,
+        [along, across]: [RingMask; 2],
+        once: &dyn Fn(&RingMask) -> RingMask,
+    ) -> Self {
+        let position = converged(position, once);
         // Without the shares of the position's and of odd modes that rounding brings in, which would outgrow the rest.
         let without_others = |mask: &RingMask| {
             let mut next = once(mask);
@@ -62,8 +72,8 @@ impl DartMasks {
             }
             next
         };
-        let along = converged(wave(&f64::cos), &without_others);
-        Self { along, across: wave(&f64::sin), position }
+        let along = converged(along, &without_others);
+        Self { position, along, across }
     }
 }
 

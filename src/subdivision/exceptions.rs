@@ -1,6 +1,6 @@
 //! Sharp edges and vertices of each level of a refinement, and the points that the smooth pass gets wrong there.
 
-use super::mask_sharp::SharpMasks;
+use super::mask_sharp::{CatmullClark, SharpMasks};
 use super::mask_step::with_opposite_vertices;
 use super::refinement::ControlIds;
 use super::ring::RingShape;
@@ -200,7 +200,10 @@ impl LevelSharpness {
             let far = if creasing == Creasing::Chaikin { far.collect() } else { SmallVec::new() };
             let shape = RingShape { faces: fan.len(), on_boundary };
             let around = Around { vertex: vertex_sharpness, spokes: values, far };
-            let mask = with_opposite_vertices(shape, &SharpMasks::new(shape, around, creasing).position);
+            let mask = with_opposite_vertices(
+                shape,
+                &SharpMasks::new::<CatmullClark>(shape, around, creasing).position,
+            );
             let position = |v: u32| positions[v as usize];
             let edges = ends.iter().zip(&mask.edges).map(|(&v, &w)| w * position(v));
             let faces = fan.iter().zip(&mask.faces).map(|(quad, &w)| w * position(quad[1]));

@@ -10,7 +10,7 @@
 //! boundary; under the rules in use they give another plane on each level. The masks here are eigenvectors of the
 //! rules in use, and their plane is the one to which those of the levels converge.
 
-use super::mask_sharp::SharpMasks;
+use super::mask_sharp::{CatmullClark, SharpMasks};
 use super::ring::{Ring, RingShape};
 use super::sharpness::Around;
 use crate::mesh::{Mesh, VertexId};
@@ -47,7 +47,7 @@ pub fn limit_mask(mesh: &Mesh, v: VertexId) -> LimitMask {
 /// The masks of a ring where something is sharp, else `None`.
 pub(super) fn sharp_masks(mesh: &Mesh, ring: &Ring) -> Option<SharpMasks> {
     let around = Around::of(mesh, ring.center, &ring.edges)?;
-    Some(SharpMasks::new(ring.shape(), around, mesh.subdivision().creasing))
+    Some(SharpMasks::new::<CatmullClark>(ring.shape(), around, mesh.subdivision().creasing))
 }
 
 /// The weights of two tangents of the limit surface at `v`, whose cross product points outwards; `None` at an isolated
@@ -188,7 +188,7 @@ fn across_boundary(ring: RingShape) -> RingMask {
 }
 
 /// Spreads the weights of the faces over their vertices.
-fn expand(mesh: &Mesh, ring: &Ring, mask: &RingMask) -> LimitMask {
+pub(super) fn expand(mesh: &Mesh, ring: &Ring, mask: &RingMask) -> LimitMask {
     let mut row = LimitMask::new();
     row.push((ring.center, mask.vertex));
     row.extend(ring.edges.iter().zip(&mask.edges).map(|(&h, &weight)| (mesh.target(h), weight)));

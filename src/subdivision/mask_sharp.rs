@@ -16,17 +16,54 @@ pub(super) struct SharpMasks {
     pub(super) tangents: Option<[RingMask; 2]>,
 }
 
+/// What a scheme does at a vertex, as masks.
+pub(super) trait RingScheme {
+    /// Carries a mask on the refined ring back to the present one.
+    fn carry_back(step: &Step, shape: RingShape, refined: &RingMask) -> RingMask;
+    /// The limit position where nothing is sharp but the boundary.
+    fn position(shape: RingShape) -> RingMask;
+    /// Two tangents there.
+    fn tangents(shape: RingShape) -> [RingMask; 2];
+    /// The masks of a dart on the ring that [`carry_back`](Self::carry_back) takes, the crease being spoke 0.
+    fn dart(faces: usize) -> DartMasks;
+}
+
+/// The Catmull-Clark scheme.
+pub(super) struct CatmullClark;
+
+impl RingScheme for CatmullClark {
+    fn carry_back(step: &Step, shape: RingShape, refined: &RingMask) -> RingMask {
+        step.carry_back(shape, &with_opposite_vertices(shape, refined))
+    }
+
+    fn position(shape: RingShape) -> RingMask {
+        position_mask(shape)
+    }
+
+    fn tangents(shape: RingShape) -> [RingMask; 2] {
+        tangent_masks(shape)
+    }
+
+    fn dart(faces: usize) -> DartMasks {
+        let shape = RingShape { faces, on_boundary: false };
+        let DartMasks { position, along, across } = DartMasks::new(faces);
+        let step = dart_step(faces, 0);
+        let [position, along, across] = [position, along, across].map(|mask| step.carry_back(shape, &mask));
+        DartMasks { position, along, across }
+    }
+}
+
 impl SharpMasks {
     /// The masks of a ring round which `around` is sharp.
-    pub(super) fn new(shape: RingShape, mut around: Around, creasing: Creasing) -> Self {
+    pub(super) fn new<S: RingScheme>(shape: RingShape, mut around: Around, creasing: Creasing) -> Self {
         let mut steps = Vec::new();
         while around.is_semi_sharp() {
             steps.push(Step::new(&around, creasing));
             around = around.refined(creasing);
         }
-        let mut masks = Self::infinite(shape, &around);
+        let mut masks = Self::infinite::<S>(shape, &around);
         for step in steps.iter().rev() {
-            let back = |mask: &RingMask| step.carry_back(shape, &with_opposite_vertices(shape, mask));
+            let back = |mask: &RingMask| S::carry_back(step, shape, mask);
             masks.position = back(&masks.position);
             masks.tangents = masks.tangents.map(|tangents| tangents.map(|mask| back(&mask)));
         }
@@ -34,7 +71,7 @@ impl SharpMasks {
     }
 
     /// The masks where sharpness is 0 or infinite.
-    fn infinite(shape: RingShape, around: &Around) -> Self {
+    fn infinite<S: RingScheme>(shape: RingShape, around: &Around) -> Self {
         let sharp = around.infinite_spokes();
         if around.is_fixed() {
             let position = RingMask::zero(shape, 1.0);
@@ -54,20 +91,19 @@ impl SharpMasks {
                 position.edges[b] += 1.0 / 6.0;
                 let tangents = sector(shape, &sharp).map(|(first, faces)| {
                     let part = RingShape { faces, on_boundary: true };
-                    tangent_masks(part).map(|mask| embedded(shape, &mask, first))
+                    S::tangents(part).map(|mask| embedded(shape, &mask, first))
                 });
                 Self { position, tangents }
             }
             [crease] => {
-                let masks = DartMasks::new(shape.faces);
-                let step = dart_step(shape.faces, crease);
-                let turned = |mask: &RingMask| step.carry_back(shape, &embedded(shape, mask, crease));
+                let masks = S::dart(shape.faces);
+                let turned = |mask: &RingMask| embedded(shape, mask, crease);
                 Self {
                     position: turned(&masks.position),
                     tangents: Some([turned(&masks.along), turned(&masks.across)]),
                 }
             }
-            _ => Self { position: position_mask(shape), tangents: Some(tangent_masks(shape)) },
+            _ => Self { position: S::position(shape), tangents: Some(S::tangents(shape)) },
         }
     }
 }

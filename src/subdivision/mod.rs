@@ -10,6 +10,8 @@ mod dart;
 mod evaluate;
 mod exceptions;
 mod limit;
+mod loop_limit;
+mod loop_refine;
 mod mask;
 mod mask_sharp;
 mod mask_step;
@@ -28,6 +30,7 @@ mod topology;
 
 pub use evaluate::{SecondDerivatives, SurfacePoint, evaluate};
 pub use limit::{LimitPoint, limit_normal, limit_point, limit_points, limit_position, limit_positions};
+pub use loop_refine::{LoopSurface, NotTriangles};
 pub use mask::{LimitMask, limit_mask, limit_tangent_masks};
 pub use normal::{face_normal, vertex_normal};
 pub use refinement::{ControlIds, RefineError, Refined, Refinement, VertexParent, refine};

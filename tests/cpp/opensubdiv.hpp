@@ -1,4 +1,4 @@
-// OpenSubdiv as an oracle: Catmull-Clark in double precision, with the tags of the polygons.
+// OpenSubdiv as an oracle: Catmull-Clark or Loop in double precision, with the tags of the polygons.
 #pragma once
 
 #include "obj.hpp"
@@ -12,7 +12,8 @@ namespace Far = OpenSubdiv::Far;
 namespace Sdc = OpenSubdiv::Sdc;
 using PrimvarRefiner = Far::PrimvarRefinerReal<double>;
 
-inline std::unique_ptr<Far::TopologyRefiner> make_refiner(Polygons const& polygons, int depth) {
+inline std::unique_ptr<Far::TopologyRefiner> make_refiner(Polygons const& polygons, int depth,
+                                                          Sdc::SchemeType scheme = Sdc::SCHEME_CATMARK) {
     using Factory = Far::TopologyRefinerFactory<Far::TopologyDescriptor>;
     std::vector<int> const sizes(polygons.sizes.begin(), polygons.sizes.end());
     std::vector<int> const vertices(polygons.vertices.begin(), polygons.vertices.end());
@@ -40,7 +41,7 @@ inline std::unique_ptr<Far::TopologyRefiner> make_refiner(Polygons const& polygo
     options.SetVtxBoundaryInterpolation(boundaries[tags.boundary]);
     if (tags.chaikin) options.SetCreasingMethod(Sdc::Options::CREASE_CHAIKIN);
     std::unique_ptr<Far::TopologyRefiner> refiner(
-        Factory::Create(descriptor, Factory::Options(Sdc::SCHEME_CATMARK, options)));
+        Factory::Create(descriptor, Factory::Options(scheme, options)));
     Far::TopologyRefiner::UniformOptions uniform(depth);
     uniform.fullTopologyInLastLevel = true;
     refiner->RefineUniform(uniform);

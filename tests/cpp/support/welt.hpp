@@ -38,6 +38,15 @@ struct Jet {
 // Throws Refused for WELT_ERROR_MESH, std::runtime_error for every other failure, as do the functions below.
 Mesh make_mesh(Polygons const& polygons);
 std::vector<Level> refine(Mesh const& mesh, unsigned depth);
+// One level of Loop subdivision.
+Mesh refine_loop(Mesh const& mesh);
+// Positions of the vertices, and the two vertices of each edge.
+std::vector<Vector> positions_of(Mesh const& mesh);
+std::vector<std::uint32_t> edges_of(Mesh const& mesh);
+struct LoopLimit {
+    std::vector<Vector> positions, normals;
+};
+LoopLimit loop_limit(Mesh const& mesh);
 // Parameters are two per point.
 std::vector<Jet> evaluate(Mesh const& mesh, std::vector<std::uint32_t> const& faces,
                           std::vector<std::uint32_t> const& corners, std::vector<double> const& parameters);
