@@ -3,7 +3,7 @@
 //! A level is a control mesh of the same surface: it has the sharpness that is left.
 
 use super::loop_limit::edge_weight;
-use super::refinement::RefineError;
+use super::refinement::{DEEPEST, RefineError};
 use super::ring::Ring;
 use super::sharpness::{Around, VertexBlend, has_limit};
 use crate::mesh::{BoundaryRule, Defects, FaceId, HalfEdgeId, Mesh, Polygons, VertexId};
@@ -45,10 +45,7 @@ impl<'a> LoopSurface<'a> {
     /// [`RefineError::TooLarge`] where the level would have more elements than 31-bit ids can number.
     pub fn refine(&self) -> Result<Polygons, RefineError> {
         let mesh = self.mesh;
-        let elements = 4 * mesh.half_edge_bound() as u64 + 6 * mesh.face_bound() as u64;
-        if elements > u64::from(u32::MAX >> 1) {
-            return Err(RefineError::TooLarge { level: 1, elements });
-        }
+        check_size(mesh.half_edge_bound() as u64 / 2, mesh.face_bound() as u64, 1)?;
         let vertices: Vec<VertexId> = mesh.vertices().collect();
         let edges: Vec<HalfEdgeId> = mesh.edges().collect();
         let mut ranks = vec![0u32; mesh.vertex_bound()];
@@ -85,8 +82,9 @@ impl<'a> LoopSurface<'a> {
     /// Refines `levels` times.
     ///
     /// # Errors
-    /// [`RefineError::TooLarge`] as [`refine`](Self::refine).
+    /// [`RefineError`], before any level is made.
     pub fn refine_levels(&self, levels: usize) -> Result<Polygons, RefineError> {
+        check_size(self.mesh.half_edge_bound() as u64 / 2, self.mesh.face_bound() as u64, levels)?;
         let mut polygons = self.mesh.to_polygons();
         for level in 1..=levels {
             // A refined surface is one; only its size can be refused.
@@ -184,4 +182,19 @@ impl<'a> LoopSurface<'a> {
         level.face_vertices.extend(middle);
         level.face_sizes.extend([3; 4]);
     }
+}
+
+/// A level has twice the edges of the last and three for each of its faces.
+fn check_size(mut edges: u64, mut faces: u64, levels: usize) -> Result<(), RefineError> {
+    if levels > DEEPEST {
+        return Err(RefineError::TooDeep { depth: levels });
+    }
+    for level in 1..=levels {
+        edges = 2 * edges + 3 * faces;
+        faces *= 4;
+        if 2 * edges > u64::from(u32::MAX >> 1) {
+            return Err(RefineError::TooLarge { level, elements: 2 * edges });
+        }
+    }
+    Ok(())
 }

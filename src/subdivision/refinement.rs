@@ -26,7 +26,7 @@ pub enum RefineError {
 }
 
 /// At this level the children of a single triangle outnumber 31-bit ids.
-const DEEPEST: usize = 16;
+pub(super) const DEEPEST: usize = 16;
 
 /// Elements of the mesh in the order in which level 0 numbers them: ascending ids, removed elements left out. On a
 /// compact mesh element `i` is therefore the one with id `i`.
