@@ -74,6 +74,7 @@ fn every_ring_takes_a_groove() {
     let Some(data) = common::shared_data() else { return };
     let rules = feature::linear_rules().expect("rules");
     let (mut count, mut narrow, mut shallow) = (0, Vec::new(), Vec::new());
+    let (mut places, mut off) = (0, 0);
     for folder in ["upholstery", "product"] {
         for (name, mesh) in common::clean_cages(&data, folder) {
             for ring in rings(&mesh) {
@@ -90,9 +91,20 @@ fn every_ring_takes_a_groove() {
                 narrow.extend(report.width.iter().flat_map(|d| [d.worst_low, d.worst_high]));
                 shallow.extend(report.extent.iter().flat_map(|d| [d.worst_low, d.worst_high]));
                 count += 1;
+                places += report.width.map_or(0, |d| d.stations);
+                off += report.width.map_or(0, |d| d.off);
+                if let Some(d) = report.width
+                    && (d.worst_low < 0.9 || d.worst_high > 1.1)
+                {
+                    println!(
+                        ring.selection.marks[0].half_edge,
+                        d.worst_low, d.worst_high, d.off, d.stations, marks
+                    );
+                }
             }
         }
     }
+    println!("width off by more than 3 % at {off} of {places} places");
     for (name, mut ratios) in [("width", narrow), ("depth", shallow)] {
         ratios.sort_by(f64::total_cmp);
         println!(

@@ -71,13 +71,14 @@ pub(super) struct Walls {
 }
 
 impl Walls {
-    /// Faces whose control points come near the box around the crossed faces, by as much again as the box is large.
+    /// Faces of the crossed components whose control points come near the box around the crossed faces. Other
+    /// components that touch are no walls of this body.
     pub(super) fn around(mesh: &Mesh, crossed: &[FaceId]) -> Self {
         let corners = || crossed.iter().flat_map(|&f| mesh.face_vertices(f)).map(|v| mesh.position(v));
         let (low, high) = corners()
             .fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), p| (low.min(p), high.max(p)));
-        let near: Vec<FaceId> = mesh
-            .faces()
+        let near: Vec<FaceId> = components(mesh, crossed)
+            .into_iter()
             .filter(|&f| {
                 let (face_low, face_high) = mesh
                     .face_vertices(f)
@@ -110,4 +111,19 @@ impl Walls {
             .min_by(|a, b| (a.0 - a.1).total_cmp(&(b.0 - b.1)))
             .map(|(thickness, depth, vertex)| Warning::Wall { thickness, depth, vertex })
     }
+}
+
+/// All faces that are joined to one of `faces` by edges.
+fn components(mesh: &Mesh, faces: &[FaceId]) -> Vec<FaceId> {
+    let mut seen = vec![false; mesh.face_bound()];
+    let mut found = Vec::new();
+    let mut waiting = faces.to_vec();
+    while let Some(f) = waiting.pop() {
+        if f.is_boundary() || std::mem::replace(&mut seen[f.index()], true) {
+            continue;
+        }
+        found.push(f);
+        waiting.extend(mesh.face_half_edges(f).map(|h| mesh.face(h.mate())));
+    }
+    found
 }

@@ -31,6 +31,8 @@ pub struct Dimension {
     pub asked_mean: f64,
     /// Mean of what was reached.
     pub reached_mean: f64,
+    /// Places that are off by more than 3 %.
+    pub off: usize,
     /// Least reached as a fraction of what was asked for.
     pub worst_low: f64,
     /// Greatest reached as a fraction of what was asked for.
@@ -189,12 +191,13 @@ impl fmt::Display for Report {
             if let Some(d) = dimension {
                 writeln!(
                     f,
-                    "{name}: asked {}, reached {:.6} of {:.6} in the mean ({:+.2} % to {:+.2} %, {} places)",
+                    "{name}: asked {}, reached {:.6} of {:.6} in the mean ({:+.2} % to {:+.2} %; {} of {} places off by more than 3 %)",
                     d.asked,
                     d.reached_mean,
                     d.asked_mean,
                     100.0 * (d.worst_low - 1.0),
                     100.0 * (d.worst_high - 1.0),
+                    d.off,
                     d.stations
                 )?;
             }

@@ -15,7 +15,7 @@ pub(crate) use linear::{LeastSquares, Row};
 use crate::job::{Cancelled, Job};
 use crate::mesh::{FaceId, Mesh, VertexId};
 use crate::subdivision::{LimitMask, limit_mask, vertex_normal};
-use crate::surface::{ClosestOptions, Facing, Foot, LimitSurface};
+use crate::surface::{ClosestOptions, Facing, Foot, Hit, LimitSurface};
 use glam::DVec3;
 use rustc_hash::FxHashMap;
 use serde::Serialize;
@@ -173,13 +173,20 @@ struct Lines {
     normals: Vec<DVec3>,
     /// Signed distance along the normal from the limit point to the frozen surface.
     gaps: Vec<f64>,
+    /// Where the lines met the frozen surface last.
+    hits: Vec<Option<Hit>>,
 }
 
 impl Lines {
     /// Steps 1 to 4 of the paper: foot of each limit point along the control normal, and the normal there.
     fn aim(mesh: &Mesh, vertices: &[VertexId], target: &Target, missed: &mut Vec<u32>) -> Self {
-        let mut lines =
-            Self { vertices: Vec::new(), masks: Vec::new(), normals: Vec::new(), gaps: Vec::new() };
+        let mut lines = Self {
+            vertices: Vec::new(),
+            masks: Vec::new(),
+            normals: Vec::new(),
+            gaps: Vec::new(),
+            hits: Vec::new(),
+        };
         for &v in vertices {
             let mask = limit_mask(mesh, v);
             let point = apply(mesh, &mask);
@@ -192,6 +199,7 @@ impl Lines {
             lines.normals.push(normal);
         }
         lines.gaps = vec![0.0; lines.vertices.len()];
+        lines.hits = vec![None; lines.vertices.len()];
         lines
     }
 
@@ -213,10 +221,20 @@ impl Lines {
     /// Step 7: how far the limit points are from the frozen surface; returns the largest distance.
     fn measure(&mut self, mesh: &Mesh, target: &Target) -> f64 {
         let mut largest = 0.0_f64;
-        for ((mask, normal), gap) in self.masks.iter().zip(&self.normals).zip(&mut self.gaps) {
+        for (i, (mask, normal)) in self.masks.iter().zip(&self.normals).enumerate() {
             let point = apply(mesh, mask);
-            *gap = gap_along(target, point, *normal).unwrap_or(0.0);
-            largest = largest.max(gap.abs());
+            let near = self.hits[i].and_then(|hit| target.surface.line_hit_near(&hit, point, *normal));
+            self.hits[i] = near
+                .filter(|hit| hit.s.abs() <= target.reach && hit.normal.dot(*normal) > 0.0)
+                .or_else(|| target.surface.nearest_line_hit(point, *normal, target.reach, *normal));
+            self.gaps[i] = match &self.hits[i] {
+                Some(hit) => hit.s,
+                None => {
+                    let foot = closest(target, point, Some(*normal));
+                    foot.map_or(0.0, |foot| (foot.position - point).dot(*normal))
+                }
+            };
+            largest = largest.max(self.gaps[i].abs());
         }
         largest
     }
@@ -248,12 +266,6 @@ fn foot_normal(target: &Target, point: DVec3, direction: Option<DVec3>) -> Optio
         .map(|hit| hit.normal)
         .or_else(|| closest(target, point, direction).map(|foot| foot.normal))
         .filter(|normal| *normal != DVec3::ZERO)
-}
-
-/// The signed distance along the unit normal `m` from `point` to the frozen surface.
-fn gap_along(target: &Target, point: DVec3, m: DVec3) -> Option<f64> {
-    let hit = target.surface.nearest_line_hit(point, m, target.reach, m).map(|hit| hit.s);
-    hit.or_else(|| closest(target, point, Some(m)).map(|foot| (foot.position - point).dot(m)))
 }
 
 /// The closest point within reach whose normal is on the side of `direction`.

@@ -12,6 +12,7 @@ mod freeze;
 mod line;
 mod line_piece;
 mod minimise;
+mod near;
 mod tree;
 
 pub use closest::{ClosestOptions, Facing, Foot};
