@@ -31,7 +31,7 @@ pub fn compile(
 ) -> Result<Program, Vec<Diagnostic>> {
     let mut errors = Vec::new();
     let mut cursor = Cursor::new(source);
-    let tokens = lex::script(&mut cursor, true, &mut errors);
+    let tokens = lex::script(&mut cursor, None, &mut errors);
     let end = Span { start: cursor.offset(), end: cursor.offset() };
     let program = compile_tokens(source, &tokens, end, scope, strings, &mut errors);
     errors.sort_by_key(Diagnostic::offset);
@@ -356,7 +356,7 @@ impl Compiler<'_> {
     }
 }
 
-/// The name of `known` that is most like `name`: at most a third of its letters differ.
+/// The name of `known` that is most like `name`: at most a third of its letters, or one, differ.
 fn nearest<'a>(name: &str, known: impl Iterator<Item = &'a str>) -> Option<String> {
     let letters: Vec<char> = name.chars().take(40).flat_map(char::to_lowercase).collect();
     let (distance, best) = known
@@ -365,7 +365,7 @@ fn nearest<'a>(name: &str, known: impl Iterator<Item = &'a str>) -> Option<Strin
             (edit_distance(&letters, &other), candidate)
         })
         .min_by_key(|(distance, _)| *distance)?;
-    (3 * distance <= letters.len()).then(|| best.to_owned())
+    (letters.len() > 1 && distance <= (letters.len() / 3).max(1)).then(|| best.to_owned())
 }
 
 /// Letters to insert, remove or replace.

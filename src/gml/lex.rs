@@ -187,23 +187,22 @@ impl Cursor {
     }
 }
 
-/// The tokens of a script up to the `}` that closes it (stepped over), or to the end of the text when `whole`.
-/// Mistakes are added to `errors` and left out of the tokens.
-pub fn script(cursor: &mut Cursor, whole: bool, errors: &mut Vec<Diagnostic>) -> Vec<(Token, Span)> {
+/// The tokens of a script: up to the `}` that closes the brace at `opened` (stepped over), else to the end of the
+/// text. Mistakes are added to `errors` and left out of the tokens.
+pub fn script(cursor: &mut Cursor, opened: Option<Span>, errors: &mut Vec<Diagnostic>) -> Vec<(Token, Span)> {
     let mut tokens: Vec<(Token, Span)> = Vec::new();
-    let opened = cursor.span_here();
     let mut depth = 0usize;
     loop {
         cursor.skip_space();
         let start = cursor.offset();
         if cursor.peek().is_none() {
-            if !whole {
+            if let Some(opened) = opened {
                 errors.push(cursor.error(opened, "this script is not closed: a `}` is missing"));
             }
             return tokens;
         }
         if cursor.peek() == Some('}') {
-            if depth == 0 && !whole {
+            if depth == 0 && opened.is_some() {
                 cursor.bump();
                 return tokens;
             }

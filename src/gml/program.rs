@@ -88,6 +88,11 @@ pub struct Program {
 }
 
 impl Program {
+    /// The words that operation `op` was compiled from.
+    pub fn word(&self, op: usize) -> &str {
+        self.source.slice(self.spans.get(op).copied().unwrap_or_default())
+    }
+
     /// A message about operation `op`.
     pub(crate) fn error(&self, op: usize, message: impl Into<String>) -> Diagnostic {
         Diagnostic::new(&self.source, self.spans.get(op).copied().unwrap_or_default(), message)

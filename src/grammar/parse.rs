@@ -174,8 +174,8 @@ impl Reader<'_> {
         if self.rules.rules.iter().any(|known| known.name == name) {
             self.errors.push(cursor.error(span, format!("rule `{name}` is there twice")));
         }
-        expect_brace(cursor, "the pattern of the rule")?;
-        let pattern = Pattern::parse(cursor, &mut self.errors);
+        let brace = expect_brace(cursor, "the pattern of the rule")?;
+        let pattern = Pattern::parse(cursor, brace, &mut self.errors);
         for node in &pattern.nodes {
             if let Err(error) = self.check_node_name(cursor, &node.name, node.span) {
                 self.errors.push(error);
@@ -210,12 +210,13 @@ impl Reader<'_> {
         let action = loop {
             cursor.skip_space();
             let start = cursor.offset();
+            let before = cursor.clone();
             let part = cursor.name();
             let part_span = if part.is_empty() { cursor.span_here() } else { cursor.span_from(start) };
             match part.as_str() {
                 "not" => {
-                    expect_brace(cursor, "a pattern")?;
-                    let inner = Pattern::parse(cursor, &mut self.errors);
+                    let brace = expect_brace(cursor, "a pattern")?;
+                    let inner = Pattern::parse(cursor, brace, &mut self.errors);
                     let mut place = Vec::new();
                     let mut known = Vec::new();
                     let mut count = nodes.len();
@@ -258,8 +259,8 @@ impl Reader<'_> {
                     forbidden.push(Forbidden { plans: rest.nodes, plan });
                 }
                 "where" | "action" => {
-                    expect_brace(cursor, "a script")?;
-                    let tokens = script(cursor, false, &mut self.errors);
+                    let brace = expect_brace(cursor, "a script")?;
+                    let tokens = script(cursor, Some(brace), &mut self.errors);
                     let end = cursor.offset();
                     let end = Span { start: end.saturating_sub(1), end };
                     let scope = Scope { nodes: &nodes, parameters: &parameters, read_only: part == "where" };
@@ -276,6 +277,7 @@ impl Reader<'_> {
                     conditions.push(program);
                 }
                 _ => {
+                    *cursor = before;
                     return Err(cursor.error(
                         part_span,
                         format!("expected `not`, `where` or `action` of rule `{name}` here"),
@@ -348,6 +350,7 @@ fn expect_number(cursor: &mut Cursor) -> Result<(f64, Span), Diagnostic> {
     let x = if cursor.at_number() {
         cursor.number()?
     } else {
+        let before = cursor.clone();
         match cursor.name().as_str() {
             "inf" => f64::INFINITY,
             "-inf" => f64::NEG_INFINITY,
@@ -356,6 +359,8 @@ fn expect_number(cursor: &mut Cursor) -> Result<(f64, Span), Diagnostic> {
                 if span.start == span.end {
                     span = cursor.span_here();
                 }
+                // What stands here may be a keyword at which reading goes on.
+                *cursor = before;
                 return Err(cursor.error(span, "expected a number"));
             }
         }
@@ -363,13 +368,11 @@ fn expect_number(cursor: &mut Cursor) -> Result<(f64, Span), Diagnostic> {
     Ok((x, cursor.span_from(start)))
 }
 
-fn expect_brace(cursor: &mut Cursor, what: &str) -> Result<(), Diagnostic> {
+/// Steps over `{`; gives its place.
+fn expect_brace(cursor: &mut Cursor, what: &str) -> Result<Span, Diagnostic> {
     cursor.skip_space();
-    if cursor.eat('{') {
-        Ok(())
-    } else {
-        Err(cursor.error(cursor.span_here(), format!("expected `{{` and {what}")))
-    }
+    let brace = cursor.span_here();
+    if cursor.eat('{') { Ok(brace) } else { Err(cursor.error(brace, format!("expected `{{` and {what}"))) }
 }
 
 /// To the next keyword of the file level: where reading goes on after a mistake.

@@ -89,9 +89,9 @@ pub(super) struct Pattern {
 }
 
 impl Pattern {
-    /// Reads a pattern up to its `}`, which is stepped over. Mistakes are added to `errors`.
-    pub(super) fn parse(cursor: &mut Cursor, errors: &mut Vec<Diagnostic>) -> Self {
-        let opened = cursor.span_here();
+    /// Reads a pattern, opened by the brace at `opened`, up to its `}`, which is stepped over. Mistakes are added to
+    /// `errors`.
+    pub(super) fn parse(cursor: &mut Cursor, opened: Span, errors: &mut Vec<Diagnostic>) -> Self {
         let mut pattern = Self::default();
         // The node and the label that the next node continues.
         let mut pending: Option<(usize, Label, Span)> = None;
