@@ -671,3 +671,27 @@ fn soup(text: &str) {
         Err(_) => assert_eq!(mesh.to_polygons(), before, "{text}"),
     }
 }
+
+#[test]
+fn large_hostile_files_are_refused_in_reasonable_time() {
+    let size = 300_000;
+    let texts = [
+        format!("rule A {{ e }} action {{ {} }}", "x ".repeat(size)),
+        format!("rule A {{ {} }} action {{ }}", "} ".repeat(size)),
+        format!("rule A {{ e({}) }} action {{ }}", "=, ".repeat(size)),
+        format!("rule A {{ {} }} action {{ }}", (0..size).map(|i| format!("n{i}> ")).collect::<String>()),
+        format!("rule A {{ {} }} action {{ }}", (0..size).map(|i| format!("n{i} ")).collect::<String>()),
+        "\"".repeat(size),
+        "rule ".repeat(size),
+        "{".repeat(size),
+        (0..size).map(|i| format!("rule R{i} {{ e }} action {{ }} ")).collect(),
+        (0..size).map(|i| format!("parameter p{i} 1 range 0 2 unit u \"h\" ")).collect(),
+        (0..size / 10).map(|i| format!("rule R{} {{ e(a{i}) l{i}> f }} action {{ }} ", i % 5)).collect(),
+    ];
+    for text in texts {
+        let clock = std::time::Instant::now();
+        let error = RuleSet::parse("hostile", &text, &|_| None).expect_err("refused");
+        assert!(error.diagnostics.len() <= 110, "{} mistakes", error.diagnostics.len());
+        assert!(clock.elapsed().as_secs_f64() < 10.0, "{} ...: {:?}", &text[..40], clock.elapsed());
+    }
+}

@@ -2,7 +2,7 @@
 
 use super::lex::{self, Cursor, Token};
 use super::program::{Op, Program, Strings};
-use super::source::{Diagnostic, Source, Span};
+use super::source::{Diagnostic, MOST_MISTAKES, Source, Span};
 use super::value::Value;
 use super::word::Word;
 use crate::mesh::Domain;
@@ -120,6 +120,9 @@ struct Compiler<'a> {
 
 impl Compiler<'_> {
     fn error(&mut self, span: Span, message: impl Into<String>) {
+        if self.errors.len() >= MOST_MISTAKES {
+            return;
+        }
         self.errors.push(Diagnostic::new(self.source, span, message));
     }
 
@@ -236,6 +239,9 @@ impl Compiler<'_> {
         if self.defined.contains(name) {
             let id = self.strings.intern(name);
             return self.emit(Op::Lookup(id), span);
+        }
+        if self.errors.len() >= MOST_MISTAKES {
+            return;
         }
         let hint = self.nearest(name).map_or_else(String::new, |near| format!("; did you mean `{near}`?"));
         self.error(span, format!("unknown word `{name}`{hint}"));

@@ -1,6 +1,6 @@
 //! Characters to tokens: the part that scripts and rule files share, and the tokens of scripts.
 
-use super::source::{Diagnostic, Source, Span};
+use super::source::{Diagnostic, MOST_MISTAKES, Source, Span};
 use glam::{DVec2, DVec3};
 use std::sync::Arc;
 
@@ -86,6 +86,20 @@ impl Cursor {
             self.at += c.len_utf8();
         }
         here
+    }
+
+    /// Goes to the end of the text when `errors` holds so many mistakes that reading ends.
+    pub fn give_up(&mut self, errors: &[Diagnostic]) -> bool {
+        let enough = errors.len() >= MOST_MISTAKES;
+        if enough {
+            self.give_up_at_once();
+        }
+        enough
+    }
+
+    /// Goes to the end of the text.
+    pub fn give_up_at_once(&mut self) {
+        self.at = self.source.text.len();
     }
 
     /// Steps over space and comments.
@@ -195,6 +209,9 @@ pub fn script(cursor: &mut Cursor, opened: Option<Span>, errors: &mut Vec<Diagno
     loop {
         cursor.skip_space();
         let start = cursor.offset();
+        if cursor.give_up(errors) {
+            return tokens;
+        }
         if cursor.peek().is_none() {
             if let Some(opened) = opened {
                 errors.push(cursor.error(opened, "this script is not closed: a `}` is missing"));

@@ -36,6 +36,11 @@ impl Strings {
         self.texts.get(id.0 as usize).map_or_else(|| "".into(), Arc::clone)
     }
 
+    /// All texts, by ascending id.
+    pub fn iter(&self) -> impl Iterator<Item = &str> {
+        self.texts.iter().map(|text| &**text)
+    }
+
     /// How many texts there are.
     pub fn len(&self) -> usize {
         self.texts.len()

@@ -4,7 +4,9 @@ use super::error::RulesError;
 use super::pattern::{Pattern, infer_kinds};
 use super::plan::{Graph, NodePlan, Step, edges, number_tests};
 use super::ruleset::{Forbidden, Loader, Parameter, Rule, RuleSet};
-use crate::gml::{Cursor, Diagnostic, Leaves, Scope, Source, Span, check, compile_tokens, is_word, script};
+use crate::gml::{
+    Cursor, Diagnostic, Leaves, Scope, Source, Span, Strings, check, compile_tokens, is_word, script,
+};
 use crate::mesh::Domain;
 use std::sync::Arc;
 
@@ -12,6 +14,9 @@ use std::sync::Arc;
 const DEEPEST_INCLUDE: usize = 50;
 /// Bytes that a file may have.
 const LONGEST: usize = 1 << 24;
+/// Parameters and rules that a rule set may have.
+const MOST_PARAMETERS: usize = 1000;
+const MOST_RULES: usize = 10_000;
 const KEYWORDS: [&str; 4] = ["include", "parameter", "phase", "rule"];
 
 pub(super) fn parse(name: &str, text: &str, loader: &Loader<'_>) -> Result<RuleSet, RulesError> {
@@ -72,7 +77,7 @@ impl Reader<'_> {
         let first_error = self.errors.len();
         loop {
             cursor.skip_space();
-            if cursor.peek().is_none() {
+            if cursor.give_up(&self.errors) || cursor.peek().is_none() {
                 break;
             }
             if let Err(error) = self.item(&mut cursor) {
@@ -144,6 +149,9 @@ impl Reader<'_> {
         if self.rules.parameters.iter().any(|known| known.name == name) {
             return Err(cursor.error(span, format!("parameter `{name}` is declared twice")));
         }
+        if self.rules.parameters.len() == MOST_PARAMETERS {
+            return Err(cursor.error(span, format!("there are more than {MOST_PARAMETERS} parameters")));
+        }
         check_free(cursor, &name, span)?;
         let (default, default_span) = expect_number(cursor)?;
         expect_keyword(cursor, "range")?;
@@ -171,6 +179,10 @@ impl Reader<'_> {
     fn rule(&mut self, cursor: &mut Cursor) -> Result<(), Diagnostic> {
         let source = Arc::clone(cursor.source());
         let (name, span) = expect_name(cursor, "the name of a rule")?;
+        if self.rules.rules.len() == MOST_RULES {
+            cursor.give_up_at_once();
+            return Err(cursor.error(span, format!("there are more than {MOST_RULES} rules")));
+        }
         if self.rules.rules.iter().any(|known| known.name == name) {
             self.errors.push(cursor.error(span, format!("rule `{name}` is there twice")));
         }
@@ -187,13 +199,12 @@ impl Reader<'_> {
         let names = &mut self.rules.names;
         let place: Vec<usize> = (0..nodes.len()).collect();
         let main_edges = edges(&pattern, &place, names);
-        let node_plan =
-            |node: &super::pattern::PatternNode, domain: Domain, names: &mut Vec<String>| NodePlan {
-                domain,
-                tests: number_tests(names, &node.tests),
-                boundary: node.boundary,
-                others: Vec::new(),
-            };
+        let node_plan = |node: &super::pattern::PatternNode, domain: Domain, names: &mut Strings| NodePlan {
+            domain,
+            tests: number_tests(names, &node.tests),
+            boundary: node.boundary,
+            others: Vec::new(),
+        };
         let plans: Vec<NodePlan> =
             pattern.nodes.iter().zip(&kinds).map(|(node, &domain)| node_plan(node, domain, names)).collect();
         let mut graph = Graph { nodes: plans, edges: main_edges };
