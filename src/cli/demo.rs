@@ -25,7 +25,6 @@ struct Scene {
 }
 
 const LEAF: &str = include_str!("../../tests/data/models/leaf_chair.obj");
-const MID_CENTURY: &str = include_str!("../../tests/data/models/mid_century_chair.obj");
 
 const SCENES: [Scene; 3] = [
     Scene {
@@ -40,22 +39,22 @@ const SCENES: [Scene; 3] = [
     },
     Scene {
         name: "corner",
-        title: "A seam with corners on a seat",
-        model: MID_CENTURY,
+        title: "A seam with four corners (cut:442,1071,443,422,444,57)",
+        model: LEAF,
         profile: &feature::GROOVE,
-        marks: &["ring:240,262"],
-        set: &["width=30%", "depth=8%"],
-        viewer: DVec3::new(0.7, 0.9, 1.6),
-        zoom: None,
+        marks: &["cut:442,1071,443,422,444,57"],
+        set: &["width=1.2", "depth=0.5"],
+        viewer: DVec3::new(-0.6, 0.5, 1.5),
+        zoom: Some(2.0),
     },
     Scene {
         name: "crossing",
-        title: "Two seams that cross",
-        model: MID_CENTURY,
+        title: "Two raised seams that cross (ring:3,331 and ring:16,333)",
+        model: LEAF,
         profile: &feature::RIDGE,
-        marks: &["ring:240,262"],
-        set: &["width=30%", "height=8%"],
-        viewer: DVec3::new(0.7, 0.9, 1.6),
+        marks: &["ring:3,331", "ring:16,333"],
+        set: &["width=1.6", "height=0.5"],
+        viewer: DVec3::new(-0.9, 0.6, 1.5),
         zoom: None,
     },
 ];

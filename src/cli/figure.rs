@@ -153,13 +153,11 @@ pub fn draw(title: &str, after: &Mesh, report: &Report, limit: &LimitPicture, vi
 }
 
 fn dimensions(report: &Report) -> String {
-    let words = |name: &str, dimension: &Option<welt::feature::Dimension>| {
-        dimension
-            .as_ref()
-            .map(|d| format!("{name} asked {}, reached {}", short(d.asked_mean), short(d.reached_mean)))
-    };
-    let parts: Vec<String> =
-        [words("width", &report.width), words("depth", &report.extent)].into_iter().flatten().collect();
+    let parts: Vec<String> = [&report.width, &report.extent]
+        .into_iter()
+        .flatten()
+        .map(|d| format!("{} asked {}, reached {}", d.name, short(d.asked_mean), short(d.reached_mean)))
+        .collect();
     if parts.is_empty() { "limit surface".to_owned() } else { parts.join("; ") }
 }
 

@@ -509,7 +509,11 @@ impl<'a> Run<'a> {
             size: reference.map(|reference| reference.size()),
             warnings,
             green: pass.greens.iter().map(|green| green.vertex.0).collect(),
-            feature_edges: feature_edges(mesh, &pass.lines),
+            feature_edges: feature_edges(
+                mesh,
+                &pass.lines,
+                self.feature.profile.map_or(0, |p| p.lines.len()),
+            ),
             affected: affected_faces(mesh, &pass.changed).into_iter().map(|f| f.0).collect(),
             times: self.clock.laps(),
         })
@@ -517,7 +521,7 @@ impl<'a> Run<'a> {
 
     fn dimension(
         &self,
-        name: &str,
+        name: &'static str,
         asked: &[f64],
         pass: &Pass,
         part: impl Fn(&Reached) -> f64,
@@ -535,6 +539,7 @@ impl<'a> Run<'a> {
         let count = pairs.len() as f64;
         let ratios = || pairs.iter().map(|(asked, reached)| reached / asked);
         Some(Dimension {
+            name,
             asked: self.length(profile, name),
             stations: pairs.len(),
             asked_mean: pairs.iter().map(|pair| pair.0).sum::<f64>() / count,
@@ -598,13 +603,13 @@ pub(super) fn affected_faces(mesh: &Mesh, changed: &[FaceId]) -> Vec<FaceId> {
 }
 
 /// Edges between vertices of one line, other than the pieces of marked edges.
-fn feature_edges(mesh: &Mesh, lines: &[LineVertex]) -> Vec<(u32, u32)> {
+fn feature_edges(mesh: &Mesh, lines: &[LineVertex], count: usize) -> Vec<(u32, u32)> {
     let of = |v: VertexId| lines.binary_search_by_key(&v, |entry| entry.vertex).ok().map(|i| &lines[i]);
     let mut edges = Vec::new();
     for a in lines {
         for b in mesh.outgoing(a.vertex).filter_map(|h| of(mesh.target(h))) {
             let pieces_of_one_mark = a.mark.is_some() && a.mark == b.mark;
-            if a.vertex < b.vertex && a.shares_line(b) && !pieces_of_one_mark {
+            if a.vertex < b.vertex && a.shares_line(b, count) && !pieces_of_one_mark {
                 edges.push((a.vertex.0, b.vertex.0));
             }
         }
