@@ -56,7 +56,7 @@ fn groove(
 ) -> Report {
     let lengths: BTreeMap<String, Length> =
         [("width".to_owned(), Length::OfEdge(0.3)), ("depth".to_owned(), depth)].into();
-    let options = Options { lengths, method, deviation, ..Options::default() };
+    let options = Options { lengths, method, samples: if deviation { 4 } else { 0 }, ..Options::default() };
     let feature = Feature { rules, profile: Some(&GROOVE) };
     feature::apply(mesh, &ring.selection, &feature, &options, &Job::new()).expect("a ring takes a groove")
 }

@@ -11,6 +11,7 @@ use welt::grammar::RuleSet;
 use welt::io;
 use welt::mark::{Selection, Selector};
 use welt::optimise::Method;
+use welt::surface::SAMPLES;
 
 pub fn run(arguments: &Apply) -> Result<ExitCode, Failure> {
     let profile = arguments.feature.as_deref().map(named).transpose()?;
@@ -66,7 +67,7 @@ fn options(arguments: &Apply) -> Result<Options, Failure> {
             FitMethod::Loop => Method::Loop,
             FitMethod::Solve => Method::Solve,
         },
-        deviation: true,
+        samples: SAMPLES,
         ..Options::default()
     };
     for setting in &arguments.set {

@@ -11,6 +11,7 @@ use welt::feature::{self, Feature, Options, Profile};
 use welt::io::{self, Format, ImportOptions};
 use welt::job::Job;
 use welt::mark::{Selection, Selector};
+use welt::surface::SAMPLES;
 
 /// One example.
 struct Scene {
@@ -70,7 +71,7 @@ pub fn run(arguments: &Demo) -> Result<ExitCode, Failure> {
                 .mesh;
         let selectors: Vec<Selector> =
             scene.marks.iter().map(|text| Selector::parse(text)).collect::<Result<_, _>>()?;
-        let mut options = Options { deviation: true, ..Options::default() };
+        let mut options = Options { samples: SAMPLES, ..Options::default() };
         for setting in scene.set {
             options.set(setting, false)?;
         }

@@ -8,8 +8,6 @@ use crate::mesh::{FaceId, Mesh};
 use crate::surface::{Deviation, DeviationSample, LimitSurface, deviation_samples};
 use glam::DVec3;
 
-/// Samples per side of a face (SYSTEMS.md, A.4).
-const SAMPLES: usize = 8;
 /// Rings of faces around the crossed ones that are frozen: the affected ones and one more, where feet may lie.
 const RINGS: usize = 5;
 
@@ -20,15 +18,17 @@ pub(super) struct Reference {
     footprint: Vec<FaceId>,
     /// Bounding box diagonal of the mesh before.
     size: f64,
+    /// Samples per side of a face.
+    samples: usize,
 }
 
 impl Reference {
-    pub(super) fn freeze(mesh: &Mesh, crossed: &[FaceId], footprint: Vec<FaceId>) -> Self {
+    pub(super) fn freeze(mesh: &Mesh, crossed: &[FaceId], footprint: Vec<FaceId>, samples: usize) -> Self {
         let mut faces = crossed.to_vec();
         for _ in 0..RINGS {
             faces = mesh.grow_faces(&faces);
         }
-        Self { surface: LimitSurface::around(mesh, &faces), footprint, size: mesh.size() }
+        Self { surface: LimitSurface::around(mesh, &faces), footprint, size: mesh.size(), samples }
     }
 
     pub(super) fn size(&self) -> f64 {
@@ -54,11 +54,11 @@ impl Reference {
         };
         let is_affected = |f: FaceId| affected.binary_search(&f).is_ok();
         job.step("deviation", 0.0)?;
-        let mut samples = deviation_samples(&now, is_affected, &self.surface, SAMPLES);
+        let mut samples = deviation_samples(&now, is_affected, &self.surface, self.samples);
         let mut outside: Vec<DeviationSample> =
             samples.iter().filter(|s| !in_footprint(s.face)).copied().collect();
         job.step("deviation", 0.5)?;
-        let back = deviation_samples(&self.surface, was_affected, &now, SAMPLES);
+        let back = deviation_samples(&self.surface, was_affected, &now, self.samples);
         outside.extend(back.iter().filter(|s| self.footprint.binary_search(&s.face).is_err()));
         samples.extend(back);
         Ok(Difference { total: Deviation::of(&samples), outside: Deviation::of(&outside) })

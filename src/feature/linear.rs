@@ -34,13 +34,14 @@ pub struct Options {
     pub numbers: BTreeMap<String, f64>,
     /// How to fit the changed mesh to the surface as it was.
     pub method: Method,
-    /// Measure deviations, and look for walls thinner than the feature is deep. Costs more than the feature itself.
-    pub deviation: bool,
+    /// Samples per side of a face for measuring deviations, 8 as a rule; 0 measures none. Measuring also looks for
+    /// walls thinner than the feature is deep. It costs more than the feature itself.
+    pub samples: usize,
 }
 
 impl Default for Options {
     fn default() -> Self {
-        Self { lengths: BTreeMap::new(), numbers: BTreeMap::new(), method: Method::Solve, deviation: false }
+        Self { lengths: BTreeMap::new(), numbers: BTreeMap::new(), method: Method::Solve, samples: 0 }
     }
 }
 
@@ -224,9 +225,10 @@ impl<'a> Run<'a> {
             region = mesh.grow_faces(&region);
         }
         let footprint = mesh.grow_faces(&crossed);
+        let measured = self.options.samples > 0;
         let reference =
-            self.options.deviation.then(|| deviation::Reference::freeze(mesh, &crossed, footprint));
-        let walls = self.options.deviation.then(|| deviation::Walls::around(mesh, &crossed));
+            measured.then(|| deviation::Reference::freeze(mesh, &crossed, footprint, self.options.samples));
+        let walls = measured.then(|| deviation::Walls::around(mesh, &crossed));
         let mut target = Target::freeze(mesh, &region);
         self.clock.lap("freeze");
 
@@ -458,7 +460,8 @@ impl<'a> Run<'a> {
         let mut fitted = None;
         if let Some(reference) = reference {
             let raised: Vec<DVec3> = pass.flat.iter().map(|&(v, _)| mesh.position(v)).collect();
-            if !raised.is_empty() {
+            let is_raised = pass.flat.iter().zip(&raised).any(|((_, flat), raised)| flat != raised);
+            if is_raised {
                 displaced = Some(reference.difference(mesh, &pass.changed, job)?);
             }
             // The surface before displacement once more, for comparison.

@@ -14,6 +14,7 @@ use crate::feature::{self, Feature, PROFILES, Profile};
 use crate::job::Job;
 use crate::mesh::VertexId;
 use crate::optimise::Method;
+use crate::surface::SAMPLES;
 use std::ffi::c_char;
 
 /// Leave vertices where the rules put them.
@@ -91,7 +92,7 @@ fn read_options(
 ) -> Result<feature::Options, Failure> {
     let mut read = feature::Options {
         method: method(options.fit)?,
-        deviation: options.deviation != 0,
+        samples: if options.deviation != 0 { SAMPLES } else { 0 },
         ..feature::Options::default()
     };
     for setting in text.split_whitespace() {

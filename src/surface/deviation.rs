@@ -9,6 +9,8 @@ use crate::mesh::{FaceId, Mesh};
 use glam::DVec3;
 use serde::Serialize;
 
+/// The usual number of samples per side of a face.
+pub const SAMPLES: usize = 8;
 /// Distances below this share of the size are looked for along the normal first.
 const NEAR: f64 = 0.1;
 

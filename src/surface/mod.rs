@@ -16,7 +16,7 @@ mod near;
 mod tree;
 
 pub use closest::{ClosestOptions, Facing, Foot};
-pub use deviation::{Comparison, Deviation, DeviationSample, compare, deviation, deviation_samples};
+pub use deviation::{Comparison, Deviation, DeviationSample, SAMPLES, compare, deviation, deviation_samples};
 pub use line::Hit;
 
 use crate::mesh::{FaceId, Mesh};
