@@ -44,6 +44,8 @@ pub fn limit_picture(before: &Mesh, after: &Mesh, report: &Report) -> Result<Lim
         }
     }
     let surface = LimitSurface::new(before);
+    // Walls are thinner than this, folds smaller.
+    let reach = 0.1 * surface.size();
     let deviation = polygons
         .positions
         .iter()
@@ -51,7 +53,7 @@ pub fn limit_picture(before: &Mesh, after: &Mesh, report: &Report) -> Result<Lim
         .zip(near)
         .map(
             |((&point, &normal), near)| {
-                if near { surface.signed_distance(point, normal).unwrap_or(0.0) } else { 0.0 }
+                if near { surface.signed_distance(point, normal, reach).unwrap_or(0.0) } else { 0.0 }
             },
         )
         .collect();

@@ -88,6 +88,11 @@ const SOLVE_STEPS: u32 = 3;
 /// Tolerance on the limit points, relative to `reach`.
 const TOLERANCE: f64 = 1e-7;
 
+/// Hits nearer than this share of the reach are taken as they are.
+const FAR: f64 = 0.05;
+/// A hit this many times as far away as the closest point is not taken.
+const GRAZING: f64 = 2.0;
+
 /// The frozen surface that a fit aims at.
 #[derive(Clone, Debug)]
 pub struct Target {
@@ -227,6 +232,9 @@ impl Lines {
             self.hits[i] = near
                 .filter(|hit| hit.s.abs() <= target.reach && hit.normal.dot(*normal) > 0.0)
                 .or_else(|| target.surface.nearest_line_hit(point, *normal, target.reach, *normal));
+            if self.hits[i].is_some_and(|hit| is_grazing(target, point, &hit)) {
+                self.hits[i] = None;
+            }
             self.gaps[i] = match &self.hits[i] {
                 Some(hit) => hit.s,
                 None => {
@@ -263,9 +271,17 @@ fn apply(mesh: &Mesh, mask: &LimitMask) -> DVec3 {
 fn foot_normal(target: &Target, point: DVec3, direction: Option<DVec3>) -> Option<DVec3> {
     direction
         .and_then(|n| target.surface.nearest_line_hit(point, n, target.reach, n))
+        .filter(|hit| !is_grazing(target, point, hit))
         .map(|hit| hit.normal)
         .or_else(|| closest(target, point, direction).map(|foot| foot.normal))
         .filter(|normal| *normal != DVec3::ZERO)
+}
+
+/// True when the surface is much nearer to `point` than the hit of its line: beside sharp folds the control normal may
+/// run along the surface, and the hit is on a part that the point has nothing to do with.
+fn is_grazing(target: &Target, point: DVec3, hit: &Hit) -> bool {
+    hit.s.abs() > FAR * target.reach
+        && closest(target, point, Some(hit.normal)).is_some_and(|foot| hit.s.abs() > GRAZING * foot.distance)
 }
 
 /// The closest point within reach whose normal is on the side of `direction`.

@@ -107,7 +107,7 @@ fn distance_to(to: &LimitSurface, point: DVec3, normal: DVec3) -> Option<f64> {
         .filter(|foot| foot.normal.dot(normal) > 0.0);
     match foot {
         Some(foot) => Some(foot.distance.copysign((point - foot.position).dot(foot.normal))),
-        None => to.signed_distance(point, normal),
+        None => to.signed_distance(point, normal, NEAR * to.size()),
     }
 }
 
