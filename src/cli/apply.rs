@@ -23,6 +23,7 @@ pub fn run(arguments: &Apply) -> Result<ExitCode, Failure> {
     let selectors: Vec<Selector> =
         arguments.marks.iter().map(|text| Selector::parse(text)).collect::<Result<_, _>>()?;
 
+    files::check_output(&arguments.output)?;
     let mut mesh = files::import(&arguments.input, &arguments.import)?;
     let before = arguments.figure.as_ref().map(|_| mesh.clone());
     let selection = Selection::resolve(&mesh, &selectors)?;

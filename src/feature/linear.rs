@@ -51,6 +51,12 @@ pub enum FeatureError {
     /// Nothing is marked.
     #[error("no edge is marked; name at least one edge the feature is to cross")]
     NoMarks,
+    /// A mark of another mesh, or of this one before it was changed.
+    #[error("mark {mark} is on an edge that the mesh does not have; select the edges anew on this mesh")]
+    NoSuchEdge {
+        /// The mark, counted from 0 in the order of the selection.
+        mark: usize,
+    },
     /// A parameter that the feature does not have.
     #[error("{feature} has no parameter '{name}'; it has {}", known.join(", "))]
     UnknownParameter {
@@ -159,6 +165,9 @@ impl<'a> Run<'a> {
     ) -> Result<Self, FeatureError> {
         if selection.marks.is_empty() {
             return Err(FeatureError::NoMarks);
+        }
+        if let Some(mark) = selection.marks.iter().position(|mark| !mesh.has_half_edge(mark.half_edge)) {
+            return Err(FeatureError::NoSuchEdge { mark });
         }
         let [vertices, edges, faces] = mesh.counts();
         let mut run = Self {
