@@ -1,6 +1,6 @@
 //! A whole groove: round a ring of 200 quads in meshes of 10 thousand to a million, and on a chair.
 //!
-//! `cargo bench --bench feature`. Medians of fresh copies of the mesh; the copy and the reading are not counted.
+//! `cargo bench --bench feature`. Medians over freshly built meshes; building and reading are not counted.
 
 use glam::DVec3;
 use std::collections::BTreeMap;
@@ -15,7 +15,7 @@ use welt::mesh::{Mesh, Polygons};
 const RUNS: usize = 9;
 
 /// A torus of `n` quads round the tube times `m` round the axis.
-fn torus(n: u32, m: u32) -> Mesh {
+fn torus(n: u32, m: u32) -> Polygons {
     let point = |i: u32, j: u32| {
         let (u, v) = (TAU * f64::from(i) / f64::from(n), TAU * f64::from(j) / f64::from(m));
         let r = 4.0 + u.cos();
@@ -28,10 +28,10 @@ fn torus(n: u32, m: u32) -> Mesh {
         polygons.face_sizes.push(4);
         polygons.face_vertices.extend([at(i, j), at(i, j + 1), at(i + 1, j + 1), at(i + 1, j)]);
     }
-    Mesh::from_polygons(&polygons).expect("a torus")
+    polygons
 }
 
-fn measure(name: &str, mesh: &Mesh, mark: &str) {
+fn measure(name: &str, polygons: &Polygons, mark: &str) {
     let rules = feature::linear_rules().expect("rules");
     let feature = Feature { rules: &rules, profile: Some(&GROOVE) };
     let lengths: BTreeMap<String, Length> =
@@ -39,12 +39,12 @@ fn measure(name: &str, mesh: &Mesh, mark: &str) {
     let options = Options { lengths, ..Options::default() };
     let mut runs: Vec<(f64, Report)> = (0..RUNS)
         .map(|_| {
-            let mut copy = mesh.clone();
+            let mut mesh = Mesh::from_polygons(polygons).expect("a mesh");
             let start = Instant::now();
             let selector = Selector::parse(mark).expect("a selector");
-            let selection = Selection::resolve(&copy, &[selector]).expect("marks");
+            let selection = Selection::resolve(&mesh, &[selector]).expect("marks");
             let report =
-                feature::apply(&mut copy, &selection, &feature, &options, &Job::new()).expect("applied");
+                feature::apply(&mut mesh, &selection, &feature, &options, &Job::new()).expect("applied");
             (start.elapsed().as_secs_f64() * 1e3, report)
         })
         .collect();
@@ -57,9 +57,8 @@ fn measure(name: &str, mesh: &Mesh, mark: &str) {
 fn main() {
     let chair = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/models/mid_century_chair.obj");
     let chair = welt::io::import(&chair, &welt::io::ImportOptions::default()).expect("the chair").mesh;
-    measure("chair of 1142 faces", &chair, "ring:240,262");
+    measure("chair of 1142 faces", &chair.to_polygons(), "ring:240,262");
     for m in [50, 500, 5000] {
-        let mesh = torus(200, m);
-        measure(&format!("torus of {} faces", 200 * m), &mesh, "ring:0,200");
+        measure(&format!("torus of {} faces", 200 * m), &torus(200, m), "ring:0,200");
     }
 }

@@ -853,7 +853,7 @@ int32_t welt_mesh_loop_limit(const welt_mesh *mesh,
  length: in bytes, SIZE_MAX for a NUL-terminated text.
  selection: receives the handle; free it with welt_selection_free.
 
- Fails with WELT_ERROR_ARGUMENT: what is wrong and what there is. Since: 0.1.
+ Fails with WELT_ERROR_ARGUMENT: what is wrong and what there is; WELT_ERROR_FILE where a mark file cannot be used. Since: 0.1.
  */
 WELT_API
 int32_t welt_selection_create(const welt_mesh *mesh,
@@ -882,7 +882,7 @@ WELT_API size_t welt_selection_count(const welt_selection *selection);
  places: may be NULL; else receives, per edge, where it is crossed, in (0, 1) from the first vertex.
  place_capacity: room in places, at least welt_selection_count(selection) doubles.
 
- Since: 0.1.
+ Fails with WELT_ERROR_ARGUMENT where the mesh is another or has changed, and WELT_ERROR_BUFFER. Since: 0.1.
  */
 WELT_API
 int32_t welt_selection_edges(const welt_selection *selection,
@@ -897,10 +897,10 @@ int32_t welt_selection_edges(const welt_selection *selection,
  Stores the marks on the mesh, as the attributes color and t of both half-edges, for rules that look for them.
  welt_feature_apply and welt_rules_apply do so by themselves.
 
- mesh: the mesh the selection was made on.
+ mesh: is changed; the mesh the selection was made on, its edges unchanged since.
  selection: must not be NULL.
 
- Since: 0.1.
+ Fails with WELT_ERROR_ARGUMENT where the mesh is another or has changed; nothing is stored then. Since: 0.1.
  */
 WELT_API int32_t welt_mesh_mark(welt_mesh *mesh, const welt_selection *selection, welt_error **error);
 
@@ -967,9 +967,10 @@ WELT_API double welt_rules_parameter_default(const welt_rules *rules, size_t ind
  Writes the least and the greatest value of parameter number index; they may be infinite.
 
  rules: must not be NULL.
- index: below welt_rules_parameter_count(rules).
+ index: below welt_rules_parameter_count(rules), 0-based.
+ low, high: receive one number each.
 
- Since: 0.1.
+ Fails with WELT_ERROR_ARGUMENT where there is no such parameter. Since: 0.1.
  */
 WELT_API
 int32_t welt_rules_parameter_range(const welt_rules *rules,
@@ -1003,7 +1004,7 @@ int32_t welt_feature_list(welt_report **list,
  width and depth.
 
  mesh: is changed; vertices keep their numbers, new ones follow.
- selection: the marked edges, made on this mesh.
+ selection: the marked edges, made on this mesh, whose edges are unchanged since.
  name: the feature, one that welt_feature_list lists, such as groove.
  name_length: in bytes, SIZE_MAX for a NUL-terminated name.
  settings: may be NULL; NAME=VALUE, separated by blanks, such as "width=0.2 depth=30%": model units, or a percentage of
@@ -1014,8 +1015,8 @@ int32_t welt_feature_list(welt_report **list,
  report: may be NULL; else receives what was done: counts, rules, leftovers, width and depth asked and reached,
  deviations, warnings. Free it with welt_report_free.
 
- Fails with WELT_ERROR_ARGUMENT (an unknown feature or setting, a width that an edge cannot take), WELT_ERROR_RULE,
- WELT_ERROR_CANCELLED; the mesh is as it was before then. Since: 0.1.
+ Fails with WELT_ERROR_ARGUMENT (an unknown feature or setting, a selection of another mesh, a width that an edge cannot
+ take: the place is the edge), WELT_ERROR_RULE, WELT_ERROR_CANCELLED; the mesh is as it was before then. Since: 0.1.
  */
 WELT_API
 int32_t welt_feature_apply(welt_mesh *mesh,
@@ -1054,9 +1055,10 @@ int32_t welt_rules_apply(welt_mesh *mesh,
  Displaces vertices along the normals of the limit surface, so that their limit points rise by the given heights, all
  together.
 
- mesh: is changed.
- vertices: the vertices, each once.
- heights: how far the limit point of each rises, in model units; negative is inwards.
+ mesh: must not be NULL; is changed.
+ vertices: the vertices, 0-based, each once; may be NULL when count is 0.
+ heights: how far the limit point of each rises, in model units; negative is inwards; may be
+ NULL when count is 0.
  count: number of vertices and of heights.
 
  Fails with WELT_ERROR_ARGUMENT where a vertex does not exist, or has no normal (the places list them), or a height is not
@@ -1078,7 +1080,7 @@ int32_t welt_mesh_displace(welt_mesh *mesh,
  model units: 3 doubles.
  job: may be NULL.
 
- Since: 0.1.
+ Fails with WELT_ERROR_ARGUMENT and WELT_ERROR_CANCELLED. Since: 0.1.
  */
 WELT_API
 int32_t welt_mesh_deviation(const welt_mesh *first,
@@ -1092,11 +1094,11 @@ int32_t welt_mesh_deviation(const welt_mesh *first,
  Freezes the limit surface of a mesh.
 
  mesh: must not be NULL.
- faces: the faces whose surface is frozen; NULL for all. Cost follows their number.
+ faces: the faces whose surface is frozen, 0-based; NULL for all. Cost follows their number.
  count: number of faces; 0 where faces is NULL.
  surface: receives the handle; free it with welt_surface_free.
 
- Since: 0.1.
+ Fails with WELT_ERROR_ARGUMENT where a face does not exist. Since: 0.1.
  */
 WELT_API
 int32_t welt_surface_create(const welt_mesh *mesh,
@@ -1141,8 +1143,8 @@ int32_t welt_surface_evaluate(const welt_surface *surface,
 /*
  Moves vertices so that their limit points lie on a frozen surface.
 
- mesh: is changed.
- vertices: the vertices that may move; NULL for all.
+ mesh: must not be NULL; is changed.
+ vertices: the vertices that may move, 0-based; NULL for all.
  count: number of vertices; 0 where vertices is NULL.
  surface: must not be NULL.
  fit: one of WELT_FIT_*.

@@ -177,7 +177,7 @@ fn points_lifted_along_the_normal_come_back() {
             };
             let foot = surface.closest(point, &options).expect("a foot");
             worst = worst.max(foot.position.distance(origin.position) / size);
-            let signed = surface.signed_distance(point, origin.normal).expect("a distance");
+            let signed = surface.signed_distance(point, origin.normal, f64::INFINITY).expect("a distance");
             assert!((signed - lift).abs() < 1e-12 * size, "{file}: {signed} {lift}");
         }
         println!("{file}: {worst:.1e}");
@@ -365,7 +365,7 @@ fn senseless_queries_have_defined_results() {
     let empty = LimitSurface::around(&mesh, &[]);
     assert!(empty.closest(DVec3::ZERO, &plain).is_none());
     assert!(empty.line_hits(DVec3::ZERO, DVec3::Z).is_empty());
-    assert!(empty.signed_distance(DVec3::ZERO, DVec3::Z).is_none());
+    assert!(empty.signed_distance(DVec3::ZERO, DVec3::Z, f64::INFINITY).is_none());
 }
 
 #[test]

@@ -11,6 +11,7 @@ use welt::grammar::RuleSet;
 use welt::io;
 use welt::mark::{Selection, Selector};
 use welt::optimise::Method;
+use welt::surface::SAMPLES;
 
 pub fn run(arguments: &Apply) -> Result<ExitCode, Failure> {
     let profile = arguments.feature.as_deref().map(named).transpose()?;
@@ -22,6 +23,7 @@ pub fn run(arguments: &Apply) -> Result<ExitCode, Failure> {
     let selectors: Vec<Selector> =
         arguments.marks.iter().map(|text| Selector::parse(text)).collect::<Result<_, _>>()?;
 
+    files::check_output(&arguments.output)?;
     let mut mesh = files::import(&arguments.input, &arguments.import)?;
     let before = arguments.figure.as_ref().map(|_| mesh.clone());
     let selection = Selection::resolve(&mesh, &selectors)?;
@@ -66,7 +68,7 @@ fn options(arguments: &Apply) -> Result<Options, Failure> {
             FitMethod::Loop => Method::Loop,
             FitMethod::Solve => Method::Solve,
         },
-        deviation: true,
+        samples: SAMPLES,
         ..Options::default()
     };
     for setting in &arguments.set {

@@ -11,6 +11,7 @@ use welt::feature::{self, Feature, Options, Profile};
 use welt::io::{self, Format, ImportOptions};
 use welt::job::Job;
 use welt::mark::{Selection, Selector};
+use welt::surface::SAMPLES;
 
 /// One example.
 struct Scene {
@@ -25,7 +26,6 @@ struct Scene {
 }
 
 const LEAF: &str = include_str!("../../tests/data/models/leaf_chair.obj");
-const MID_CENTURY: &str = include_str!("../../tests/data/models/mid_century_chair.obj");
 
 const SCENES: [Scene; 3] = [
     Scene {
@@ -40,22 +40,22 @@ const SCENES: [Scene; 3] = [
     },
     Scene {
         name: "corner",
-        title: "A seam with corners on a seat",
-        model: MID_CENTURY,
+        title: "A seam with four corners (cut:442,1071,443,422,444,57)",
+        model: LEAF,
         profile: &feature::GROOVE,
-        marks: &["ring:240,262"],
-        set: &["width=30%", "depth=8%"],
-        viewer: DVec3::new(0.7, 0.9, 1.6),
-        zoom: None,
+        marks: &["cut:442,1071,443,422,444,57"],
+        set: &["width=1.2", "depth=0.5"],
+        viewer: DVec3::new(-0.6, 0.5, 1.5),
+        zoom: Some(2.0),
     },
     Scene {
         name: "crossing",
-        title: "Two seams that cross",
-        model: MID_CENTURY,
+        title: "Two raised seams that cross (ring:3,331 and ring:16,333)",
+        model: LEAF,
         profile: &feature::RIDGE,
-        marks: &["ring:240,262"],
-        set: &["width=30%", "height=8%"],
-        viewer: DVec3::new(0.7, 0.9, 1.6),
+        marks: &["ring:3,331", "ring:16,333"],
+        set: &["width=1.6", "height=0.5"],
+        viewer: DVec3::new(-0.9, 0.6, 1.5),
         zoom: None,
     },
 ];
@@ -71,7 +71,7 @@ pub fn run(arguments: &Demo) -> Result<ExitCode, Failure> {
                 .mesh;
         let selectors: Vec<Selector> =
             scene.marks.iter().map(|text| Selector::parse(text)).collect::<Result<_, _>>()?;
-        let mut options = Options { deviation: true, ..Options::default() };
+        let mut options = Options { samples: SAMPLES, ..Options::default() };
         for setting in scene.set {
             options.set(setting, false)?;
         }

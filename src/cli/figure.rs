@@ -44,6 +44,8 @@ pub fn limit_picture(before: &Mesh, after: &Mesh, report: &Report) -> Result<Lim
         }
     }
     let surface = LimitSurface::new(before);
+    // Walls are thinner than this, folds smaller.
+    let reach = 0.1 * surface.size();
     let deviation = polygons
         .positions
         .iter()
@@ -51,7 +53,7 @@ pub fn limit_picture(before: &Mesh, after: &Mesh, report: &Report) -> Result<Lim
         .zip(near)
         .map(
             |((&point, &normal), near)| {
-                if near { surface.signed_distance(point, normal).unwrap_or(0.0) } else { 0.0 }
+                if near { surface.signed_distance(point, normal, reach).unwrap_or(0.0) } else { 0.0 }
             },
         )
         .collect();
@@ -153,13 +155,11 @@ pub fn draw(title: &str, after: &Mesh, report: &Report, limit: &LimitPicture, vi
 }
 
 fn dimensions(report: &Report) -> String {
-    let words = |name: &str, dimension: &Option<welt::feature::Dimension>| {
-        dimension
-            .as_ref()
-            .map(|d| format!("{name} asked {}, reached {}", short(d.asked_mean), short(d.reached_mean)))
-    };
-    let parts: Vec<String> =
-        [words("width", &report.width), words("depth", &report.extent)].into_iter().flatten().collect();
+    let parts: Vec<String> = [&report.width, &report.extent]
+        .into_iter()
+        .flatten()
+        .map(|d| format!("{} asked {}, reached {}", d.name, short(d.asked_mean), short(d.reached_mean)))
+        .collect();
     if parts.is_empty() { "limit surface".to_owned() } else { parts.join("; ") }
 }
 

@@ -5,7 +5,7 @@ use super::error::Failure;
 use serde::Serialize;
 use std::io::{Read, Write};
 use std::path::Path;
-use welt::io::{self, Format, ImportReport, Source};
+use welt::io::{self, ExportError, Format, ImportReport, Source};
 use welt::mesh::Mesh;
 
 pub fn is_standard(path: &Path) -> bool {
@@ -34,6 +34,14 @@ fn tell(path: &Path, report: &ImportReport) {
     for line in report.to_string().lines() {
         eprintln!("{}: {line}", path.display());
     }
+}
+
+/// Refuses a mesh file whose format is not known, before any work is done.
+pub fn check_output(path: &Path) -> Result<(), Failure> {
+    if is_standard(path) || Format::of(path).is_some() {
+        return Ok(());
+    }
+    Err(ExportError::UnknownFormat { file: path.display().to_string() }.into())
 }
 
 /// Writes the control mesh.

@@ -8,8 +8,6 @@ use crate::mesh::{FaceId, Mesh};
 use crate::surface::{Deviation, DeviationSample, LimitSurface, deviation_samples};
 use glam::DVec3;
 
-/// Samples per side of a face (SYSTEMS.md, A.4).
-const SAMPLES: usize = 8;
 /// Rings of faces around the crossed ones that are frozen: the affected ones and one more, where feet may lie.
 const RINGS: usize = 5;
 
@@ -20,15 +18,17 @@ pub(super) struct Reference {
     footprint: Vec<FaceId>,
     /// Bounding box diagonal of the mesh before.
     size: f64,
+    /// Samples per side of a face.
+    samples: usize,
 }
 
 impl Reference {
-    pub(super) fn freeze(mesh: &Mesh, crossed: &[FaceId], footprint: Vec<FaceId>) -> Self {
+    pub(super) fn freeze(mesh: &Mesh, crossed: &[FaceId], footprint: Vec<FaceId>, samples: usize) -> Self {
         let mut faces = crossed.to_vec();
         for _ in 0..RINGS {
             faces = mesh.grow_faces(&faces);
         }
-        Self { surface: LimitSurface::around(mesh, &faces), footprint, size: mesh.size() }
+        Self { surface: LimitSurface::around(mesh, &faces), footprint, size: mesh.size(), samples }
     }
 
     pub(super) fn size(&self) -> f64 {
@@ -54,11 +54,11 @@ impl Reference {
         };
         let is_affected = |f: FaceId| affected.binary_search(&f).is_ok();
         job.step("deviation", 0.0)?;
-        let mut samples = deviation_samples(&now, is_affected, &self.surface, SAMPLES);
+        let mut samples = deviation_samples(&now, is_affected, &self.surface, self.samples);
         let mut outside: Vec<DeviationSample> =
             samples.iter().filter(|s| !in_footprint(s.face)).copied().collect();
         job.step("deviation", 0.5)?;
-        let back = deviation_samples(&self.surface, was_affected, &now, SAMPLES);
+        let back = deviation_samples(&self.surface, was_affected, &now, self.samples);
         outside.extend(back.iter().filter(|s| self.footprint.binary_search(&s.face).is_err()));
         samples.extend(back);
         Ok(Difference { total: Deviation::of(&samples), outside: Deviation::of(&outside) })
@@ -71,13 +71,14 @@ pub(super) struct Walls {
 }
 
 impl Walls {
-    /// Faces whose control points come near the box around the crossed faces, by as much again as the box is large.
+    /// Faces of the crossed components whose control points come near the box around the crossed faces. Other
+    /// components that touch are no walls of this body.
     pub(super) fn around(mesh: &Mesh, crossed: &[FaceId]) -> Self {
         let corners = || crossed.iter().flat_map(|&f| mesh.face_vertices(f)).map(|v| mesh.position(v));
         let (low, high) = corners()
             .fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), p| (low.min(p), high.max(p)));
-        let near: Vec<FaceId> = mesh
-            .faces()
+        let near: Vec<FaceId> = components(mesh, crossed)
+            .into_iter()
             .filter(|&f| {
                 let (face_low, face_high) = mesh
                     .face_vertices(f)
@@ -110,4 +111,19 @@ impl Walls {
             .min_by(|a, b| (a.0 - a.1).total_cmp(&(b.0 - b.1)))
             .map(|(thickness, depth, vertex)| Warning::Wall { thickness, depth, vertex })
     }
+}
+
+/// All faces that are joined to one of `faces` by edges.
+fn components(mesh: &Mesh, faces: &[FaceId]) -> Vec<FaceId> {
+    let mut seen = vec![false; mesh.face_bound()];
+    let mut found = Vec::new();
+    let mut waiting = faces.to_vec();
+    while let Some(f) = waiting.pop() {
+        if f.is_boundary() || std::mem::replace(&mut seen[f.index()], true) {
+            continue;
+        }
+        found.push(f);
+        waiting.extend(mesh.face_half_edges(f).map(|h| mesh.face(h.mate())));
+    }
+    found
 }

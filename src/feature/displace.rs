@@ -35,10 +35,10 @@ impl LineVertex {
             .max_by(|a, b| a.abs().total_cmp(&b.abs()))
     }
 
-    /// True when both lie on one line of a feature.
-    pub(super) fn shares_line(&self, other: &Self) -> bool {
+    /// True when both lie on one line of a feature with `count` lines. Marks may count their lines from either side.
+    pub(super) fn shares_line(&self, other: &Self, count: usize) -> bool {
         let lines = |v: &Self| [Some(v.line), v.cross].into_iter().flatten();
-        lines(self).any(|line| lines(other).any(|other| line == other))
+        lines(self).any(|line| lines(other).any(|other| line == other || line + other + 1 == count))
     }
 }
 

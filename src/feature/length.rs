@@ -9,7 +9,8 @@ use std::str::FromStr;
 pub enum Length {
     /// In model units.
     Units(f64),
-    /// As a fraction of the length of the crossed edge (`30%` is 0.3).
+    /// As a fraction of the length of the crossed edge (`30%` is 0.3); for a width, of the edge's extent across the
+    /// feature, which is its length where it is crossed at a right angle.
     OfEdge(f64),
 }
 

@@ -23,6 +23,8 @@ pub struct Counts {
 /// Asked and reached dimension over the straight stretches of a feature, in model units.
 #[derive(Clone, Copy, PartialEq, Debug, Serialize)]
 pub struct Dimension {
+    /// Name of the parameter.
+    pub name: &'static str,
     /// What was asked for, as given.
     pub asked: Length,
     /// Marked edges at which the band runs straight, where it was measured.
@@ -31,6 +33,8 @@ pub struct Dimension {
     pub asked_mean: f64,
     /// Mean of what was reached.
     pub reached_mean: f64,
+    /// Places that are off by more than 3 %.
+    pub off: usize,
     /// Least reached as a fraction of what was asked for.
     pub worst_low: f64,
     /// Greatest reached as a fraction of what was asked for.
@@ -185,19 +189,19 @@ impl fmt::Display for Report {
         let rules: Vec<String> =
             self.rules.iter().filter(|r| r.1 > 0).map(|(name, count)| format!("{name} {count}")).collect();
         writeln!(f, "rules: {}", if rules.is_empty() { "none applied".into() } else { rules.join(", ") })?;
-        for (name, dimension) in [("width", &self.width), ("extent", &self.extent)] {
-            if let Some(d) = dimension {
-                writeln!(
-                    f,
-                    "{name}: asked {}, reached {:.6} of {:.6} in the mean ({:+.2} % to {:+.2} %, {} places)",
-                    d.asked,
-                    d.reached_mean,
-                    d.asked_mean,
-                    100.0 * (d.worst_low - 1.0),
-                    100.0 * (d.worst_high - 1.0),
-                    d.stations
-                )?;
-            }
+        for d in [&self.width, &self.extent].into_iter().flatten() {
+            writeln!(
+                f,
+                "{}: asked {}, reached {:.6} of {:.6} in the mean ({:+.2} % to {:+.2} %; {} of {} places off by more than 3 %)",
+                d.name,
+                d.asked,
+                d.reached_mean,
+                d.asked_mean,
+                100.0 * (d.worst_low - 1.0),
+                100.0 * (d.worst_high - 1.0),
+                d.off,
+                d.stations
+            )?;
         }
         writeln!(
             f,

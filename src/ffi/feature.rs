@@ -1,9 +1,9 @@
 //! Features: the whole job in one call, and its stages one by one.
 
-use super::arguments::{self, Output};
+use super::arguments::{self, Buffer, Output};
 use super::boundary::boundary;
 use super::error::WeltError;
-use super::failure::Failure;
+use super::failure::{Failure, Place};
 use super::job::WeltJob;
 use super::mesh::{WeltMesh, mesh_of};
 use super::options::{self, Options};
@@ -14,6 +14,8 @@ use crate::feature::{self, Feature, PROFILES, Profile};
 use crate::job::Job;
 use crate::mesh::VertexId;
 use crate::optimise::Method;
+use crate::surface::SAMPLES;
+use std::collections::BTreeSet;
 use std::ffi::c_char;
 
 /// Leave vertices where the rules put them.
@@ -91,7 +93,7 @@ fn read_options(
 ) -> Result<feature::Options, Failure> {
     let mut read = feature::Options {
         method: method(options.fit)?,
-        deviation: options.deviation != 0,
+        samples: if options.deviation != 0 { SAMPLES } else { 0 },
         ..feature::Options::default()
     };
     for setting in text.split_whitespace() {
@@ -129,7 +131,10 @@ unsafe fn apply(
     let options = read_options(text, options, feature.profile.is_none())?;
     let idle = Job::new();
     let job = job.map_or(&idle, |job| &job.job);
-    let done = mesh.change(|mesh| Ok(feature::apply(mesh, &selection.selection, feature, &options, job)?))?;
+    let done = mesh.change(|mesh| {
+        let selection = selection.on(mesh)?;
+        Ok(feature::apply(mesh, selection, feature, &options, job)?)
+    })?;
     if let Some(report) = report {
         report.handle(WeltReport::new(&done)?);
     }
@@ -140,7 +145,7 @@ unsafe fn apply(
 /// width and depth.
 ///
 /// mesh: is changed; vertices keep their numbers, new ones follow.
-/// selection: the marked edges, made on this mesh.
+/// selection: the marked edges, made on this mesh, whose edges are unchanged since.
 /// name: the feature, one that welt_feature_list lists, such as groove.
 /// name_length: in bytes, SIZE_MAX for a NUL-terminated name.
 /// settings: may be NULL; NAME=VALUE, separated by blanks, such as "width=0.2 depth=30%": model units, or a percentage of
@@ -151,8 +156,8 @@ unsafe fn apply(
 /// report: may be NULL; else receives what was done: counts, rules, leftovers, width and depth asked and reached,
 /// deviations, warnings. Free it with welt_report_free.
 ///
-/// Fails with WELT_ERROR_ARGUMENT (an unknown feature or setting, a width that an edge cannot take), WELT_ERROR_RULE,
-/// WELT_ERROR_CANCELLED; the mesh is as it was before then. Since: 0.1.
+/// Fails with WELT_ERROR_ARGUMENT (an unknown feature or setting, a selection of another mesh, a width that an edge cannot
+/// take: the place is the edge), WELT_ERROR_RULE, WELT_ERROR_CANCELLED; the mesh is as it was before then. Since: 0.1.
 #[unsafe(no_mangle)]
 #[allow(clippy::too_many_arguments)]
 pub unsafe extern "C" fn welt_feature_apply(
@@ -218,9 +223,10 @@ pub unsafe extern "C" fn welt_rules_apply(
 /// Displaces vertices along the normals of the limit surface, so that their limit points rise by the given heights, all
 /// together.
 ///
-/// mesh: is changed.
-/// vertices: the vertices, each once.
-/// heights: how far the limit point of each rises, in model units; negative is inwards.
+/// mesh: must not be NULL; is changed.
+/// vertices: the vertices, 0-based, each once; may be NULL when count is 0.
+/// heights: how far the limit point of each rises, in model units; negative is inwards; may be
+/// NULL when count is 0.
 /// count: number of vertices and of heights.
 ///
 /// Fails with WELT_ERROR_ARGUMENT where a vertex does not exist, or has no normal (the places list them), or a height is not
@@ -241,7 +247,7 @@ pub unsafe extern "C" fn welt_mesh_displace(
         // SAFETY: the header asks for a living mesh that nobody else uses.
         let mesh = unsafe { arguments::handle_mut(mesh, "mesh") }?;
         let checked = mesh.read()?;
-        let mut seen = std::collections::BTreeSet::new();
+        let mut seen = BTreeSet::new();
         for (&v, height) in vertices.iter().zip(heights) {
             if !checked.has_vertex(VertexId(v)) {
                 return Err(Failure::argument(format!("vertex {v} does not exist")));
@@ -263,7 +269,7 @@ pub unsafe extern "C" fn welt_mesh_displace(
                 return Ok(());
             }
             mesh.rollback(checkpoint);
-            let place = |v: &VertexId| super::failure::Place::vertex(v.0, "the surface has no normal here");
+            let place = |v: &VertexId| Place::vertex(v.0, "the surface has no normal here");
             Err(Failure {
                 places: left_out.iter().map(place).collect(),
                 ..Failure::argument(format!("{} vertices have no normal to rise along", left_out.len()))
@@ -282,7 +288,7 @@ pub unsafe extern "C" fn welt_mesh_displace(
 /// model units: 3 doubles.
 /// job: may be NULL.
 ///
-/// Since: 0.1.
+/// Fails with WELT_ERROR_ARGUMENT and WELT_ERROR_CANCELLED. Since: 0.1.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn welt_mesh_deviation(
     first: *const WeltMesh,
@@ -299,7 +305,7 @@ pub unsafe extern "C" fn welt_mesh_deviation(
                 mesh_of(first)?,
                 mesh_of(second)?,
                 arguments::optional(job, "job")?,
-                arguments::Buffer::new(values, 3, 3, "values")?,
+                Buffer::new(values, 3, 3, "values")?,
             )
         };
         if !(1..=64).contains(&samples) {

@@ -141,9 +141,10 @@ pub unsafe extern "C" fn welt_rules_parameter_default(rules: *const WeltRules, i
 /// Writes the least and the greatest value of parameter number index; they may be infinite.
 ///
 /// rules: must not be NULL.
-/// index: below welt_rules_parameter_count(rules).
+/// index: below welt_rules_parameter_count(rules), 0-based.
+/// low, high: receive one number each.
 ///
-/// Since: 0.1.
+/// Fails with WELT_ERROR_ARGUMENT where there is no such parameter. Since: 0.1.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn welt_rules_parameter_range(
     rules: *const WeltRules,

@@ -3,15 +3,44 @@
 use super::arguments::{self, Buffer, Output};
 use super::boundary::{boundary, boundary_value};
 use super::error::WeltError;
-use super::failure::Failure;
+use super::failure::{Failure, Location, Place};
 use super::mesh::{WeltMesh, mesh_of};
 use crate::mark::{self, Selection, Selector};
+use crate::mesh::Mesh;
 use std::ffi::c_char;
 
 /// Marked edges: which edges of a mesh a feature crosses, and where. Never changes; it belongs to the mesh as it was when the
 /// selection was made.
 pub struct WeltSelection {
-    pub(super) selection: Selection,
+    selection: Selection,
+    /// The vertices of each marked edge, by which a mesh that has changed since is told.
+    edges: Vec<[u32; 2]>,
+}
+
+impl WeltSelection {
+    fn new(mesh: &Mesh, selection: Selection) -> Self {
+        let edges = selection
+            .marks
+            .iter()
+            .map(|mark| [mesh.source(mark.half_edge).0, mesh.target(mark.half_edge).0])
+            .collect();
+        Self { selection, edges }
+    }
+
+    /// The marks, for the mesh on which they name the edges they were made for.
+    pub(super) fn on(&self, mesh: &Mesh) -> Result<&Selection, Failure> {
+        for (mark, &[a, b]) in self.selection.marks.iter().zip(&self.edges) {
+            let h = mark.half_edge;
+            if !mesh.has_half_edge(h) || [mesh.source(h).0, mesh.target(h).0] != [a, b] {
+                let message = format!(
+                    "the selection marks edge {a},{b} of another mesh, or of this one before it was changed; make it anew"
+                );
+                let place = Place { location: Location::Edge(a, b), message: message.clone(), text: None };
+                return Err(Failure { places: vec![place], ..Failure::argument(message) });
+            }
+        }
+        Ok(&self.selection)
+    }
 }
 
 /// Finds the edges that selectors name.
@@ -23,7 +52,7 @@ pub struct WeltSelection {
 /// length: in bytes, SIZE_MAX for a NUL-terminated text.
 /// selection: receives the handle; free it with welt_selection_free.
 ///
-/// Fails with WELT_ERROR_ARGUMENT: what is wrong and what there is. Since: 0.1.
+/// Fails with WELT_ERROR_ARGUMENT: what is wrong and what there is; WELT_ERROR_FILE where a mark file cannot be used. Since: 0.1.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn welt_selection_create(
     mesh: *const WeltMesh,
@@ -43,7 +72,7 @@ pub unsafe extern "C" fn welt_selection_create(
         };
         let selectors: Vec<Selector> =
             text.split_whitespace().map(Selector::parse).collect::<Result<_, _>>()?;
-        output.handle(WeltSelection { selection: Selection::resolve(mesh, &selectors)? });
+        output.handle(WeltSelection::new(mesh, Selection::resolve(mesh, &selectors)?));
         Ok(())
     };
     // SAFETY: the header asks for NULL or a place for an error.
@@ -76,7 +105,7 @@ pub unsafe extern "C" fn welt_selection_count(selection: *const WeltSelection) -
 /// places: may be NULL; else receives, per edge, where it is crossed, in (0, 1) from the first vertex.
 /// place_capacity: room in places, at least welt_selection_count(selection) doubles.
 ///
-/// Since: 0.1.
+/// Fails with WELT_ERROR_ARGUMENT where the mesh is another or has changed, and WELT_ERROR_BUFFER. Since: 0.1.
 #[unsafe(no_mangle)]
 #[allow(clippy::too_many_arguments)]
 pub unsafe extern "C" fn welt_selection_edges(
@@ -91,8 +120,7 @@ pub unsafe extern "C" fn welt_selection_edges(
     let body = || {
         // SAFETY: the header asks for a living selection and mesh.
         let (selection, mesh) = unsafe { (arguments::handle(selection, "selection")?, mesh_of(mesh)?) };
-        let marks = &selection.selection.marks;
-        check_selection(&selection.selection, mesh)?;
+        let marks = &selection.on(mesh)?.marks;
         // SAFETY: the header asks for buffers of these capacities.
         let ids = unsafe { Buffer::new(edges, capacity, 2 * marks.len(), "edges") }?;
         if !places.is_null() {
@@ -100,9 +128,7 @@ pub unsafe extern "C" fn welt_selection_edges(
             let places = unsafe { Buffer::new(places, place_capacity, marks.len(), "places") }?;
             places.fill(marks.iter().map(|mark| mark.t));
         }
-        ids.fill(
-            marks.iter().flat_map(|mark| [mesh.source(mark.half_edge).0, mesh.target(mark.half_edge).0]),
-        );
+        ids.fill(selection.edges.as_flattened().iter().copied());
         Ok(())
     };
     // SAFETY: the header asks for NULL or a place for an error.
@@ -112,10 +138,10 @@ pub unsafe extern "C" fn welt_selection_edges(
 /// Stores the marks on the mesh, as the attributes color and t of both half-edges, for rules that look for them.
 /// welt_feature_apply and welt_rules_apply do so by themselves.
 ///
-/// mesh: the mesh the selection was made on.
+/// mesh: is changed; the mesh the selection was made on, its edges unchanged since.
 /// selection: must not be NULL.
 ///
-/// Since: 0.1.
+/// Fails with WELT_ERROR_ARGUMENT where the mesh is another or has changed; nothing is stored then. Since: 0.1.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn welt_mesh_mark(
     mesh: *mut WeltMesh,
@@ -126,20 +152,11 @@ pub unsafe extern "C" fn welt_mesh_mark(
         // SAFETY: the header asks for a living mesh that nobody else uses and a living selection.
         let (mesh, selection) =
             unsafe { (arguments::handle_mut(mesh, "mesh")?, arguments::handle(selection, "selection")?) };
-        check_selection(&selection.selection, mesh.read()?)?;
         mesh.change(|mesh| {
-            mark::place(mesh, &selection.selection.marks);
+            mark::place(mesh, &selection.on(mesh)?.marks);
             Ok(())
         })
     };
     // SAFETY: the header asks for NULL or a place for an error.
     unsafe { boundary(error, body) }
-}
-
-/// A selection may meet a mesh it was not made on; what is certain to be wrong is refused.
-pub(super) fn check_selection(selection: &Selection, mesh: &crate::mesh::Mesh) -> Result<(), Failure> {
-    if selection.marks.iter().all(|mark| mesh.has_half_edge(mark.half_edge)) {
-        return Ok(());
-    }
-    Err(Failure::argument("the selection names edges that the mesh does not have; make it anew on this mesh"))
 }

@@ -22,11 +22,11 @@ pub struct WeltSurface {
 /// Freezes the limit surface of a mesh.
 ///
 /// mesh: must not be NULL.
-/// faces: the faces whose surface is frozen; NULL for all. Cost follows their number.
+/// faces: the faces whose surface is frozen, 0-based; NULL for all. Cost follows their number.
 /// count: number of faces; 0 where faces is NULL.
 /// surface: receives the handle; free it with welt_surface_free.
 ///
-/// Since: 0.1.
+/// Fails with WELT_ERROR_ARGUMENT where a face does not exist. Since: 0.1.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn welt_surface_create(
     mesh: *const WeltMesh,
@@ -138,8 +138,8 @@ fn jet(point: Option<SurfacePoint>) -> [DVec3; 6] {
 
 /// Moves vertices so that their limit points lie on a frozen surface.
 ///
-/// mesh: is changed.
-/// vertices: the vertices that may move; NULL for all.
+/// mesh: must not be NULL; is changed.
+/// vertices: the vertices that may move, 0-based; NULL for all.
 /// count: number of vertices; 0 where vertices is NULL.
 /// surface: must not be NULL.
 /// fit: one of WELT_FIT_*.
@@ -172,13 +172,14 @@ pub unsafe extern "C" fn welt_mesh_fit(
             )
         };
         let method = method(fit)?;
+        let checked = mesh.read()?;
         let mut active: Vec<VertexId> = match named {
             Some(vertices) => vertices.iter().map(|&v| VertexId(v)).collect(),
-            None => mesh.read()?.vertices().collect(),
+            None => checked.vertices().collect(),
         };
         active.sort_unstable();
         active.dedup();
-        if let Some(missing) = active.iter().find(|&&v| !mesh.read().is_ok_and(|mesh| mesh.has_vertex(v))) {
+        if let Some(missing) = active.iter().find(|&&v| !checked.has_vertex(v)) {
             return Err(Failure::argument(format!("vertex {} does not exist", missing.0)));
         }
         let idle = Job::new();

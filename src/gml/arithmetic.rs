@@ -39,13 +39,7 @@ impl Execution<'_, '_, '_> {
     }
 
     fn two_kinds(&self, word: &str, a: Value, b: Value) -> Fault {
-        error(format!(
-            "`{word}` cannot take the {} {} and the {} {}",
-            a.kind(),
-            self.machine.show(&a),
-            b.kind(),
-            self.machine.show(&b)
-        ))
+        error(format!("`{word}` cannot take {} and {}", self.describe(&a), self.describe(&b)))
     }
 
     pub(super) fn add(&mut self) -> Result<(), Fault> {

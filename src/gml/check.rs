@@ -73,7 +73,7 @@ pub(crate) fn check(program: &Program, leaves: Leaves) -> Option<Diagnostic> {
             (Leaves::OneNumber, [one]) if one.kinds.meets(Kinds::NUMBER) => return None,
             (Leaves::OneNumber, [one]) => (
                 program.last_op(),
-                format!("the condition leaves a {}; it must leave one number", one.kinds.describe()),
+                format!("the condition leaves {}; it must leave one number", one.kinds.describe()),
             ),
             (Leaves::OneNumber, left) => (
                 program.last_op(),
@@ -178,7 +178,7 @@ impl Checker<'_> {
             let known = self.pop(at, signature.name)?;
             if !known.kinds.meets(*wanted) {
                 let message = format!(
-                    "`{}` needs a {}, not a {}",
+                    "`{}` needs {}, not {}",
                     signature.name,
                     wanted.describe(),
                     known.kinds.describe()
@@ -233,7 +233,7 @@ impl Checker<'_> {
                     let below = self.pop(at, word.signature().name)?;
                     if !below.kinds.meets(Kinds::HALF_EDGE) {
                         let (name, found) = (word.signature().name, below.kinds.describe());
-                        return Err(End::Mistake(at, format!("`{name}` needs a half-edge, not a {found}")));
+                        return Err(End::Mistake(at, format!("`{name}` needs a half-edge, not {found}")));
                     }
                 } else if top.kinds.meets(Kinds::NUMBER) {
                     return Err(End::Unknown);
@@ -272,7 +272,7 @@ impl Checker<'_> {
                 if known && !a.kinds.meets(b.kinds) {
                     let name = word.signature().name;
                     let [a, b] = [a, b].map(|known| known.kinds.describe());
-                    return Err(End::Mistake(at, format!("`{name}` cannot take a {a} and a {b}")));
+                    return Err(End::Mistake(at, format!("`{name}` cannot take {a} and {b}")));
                 }
                 let both = if known { a.kinds } else { Kinds::LINEAR };
                 self.push(both);

@@ -2,7 +2,7 @@
 
 use super::lex::{self, Cursor, Token};
 use super::program::{Op, Program, Strings};
-use super::source::{Diagnostic, Source, Span};
+use super::source::{Diagnostic, MOST_MISTAKES, Source, Span};
 use super::value::Value;
 use super::word::Word;
 use crate::mesh::Domain;
@@ -31,7 +31,7 @@ pub fn compile(
 ) -> Result<Program, Vec<Diagnostic>> {
     let mut errors = Vec::new();
     let mut cursor = Cursor::new(source);
-    let tokens = lex::script(&mut cursor, true, &mut errors);
+    let tokens = lex::script(&mut cursor, None, &mut errors);
     let end = Span { start: cursor.offset(), end: cursor.offset() };
     let program = compile_tokens(source, &tokens, end, scope, strings, &mut errors);
     errors.sort_by_key(Diagnostic::offset);
@@ -120,6 +120,9 @@ struct Compiler<'a> {
 
 impl Compiler<'_> {
     fn error(&mut self, span: Span, message: impl Into<String>) {
+        if self.errors.len() >= MOST_MISTAKES {
+            return;
+        }
         self.errors.push(Diagnostic::new(self.source, span, message));
     }
 
@@ -236,6 +239,9 @@ impl Compiler<'_> {
         if self.defined.contains(name) {
             let id = self.strings.intern(name);
             return self.emit(Op::Lookup(id), span);
+        }
+        if self.errors.len() >= MOST_MISTAKES {
+            return;
         }
         let hint = self.nearest(name).map_or_else(String::new, |near| format!("; did you mean `{near}`?"));
         self.error(span, format!("unknown word `{name}`{hint}"));
@@ -356,7 +362,7 @@ impl Compiler<'_> {
     }
 }
 
-/// The name of `known` that is most like `name`: at most a third of its letters differ.
+/// The name of `known` that is most like `name`: at most a third of its letters, or one, differ.
 fn nearest<'a>(name: &str, known: impl Iterator<Item = &'a str>) -> Option<String> {
     let letters: Vec<char> = name.chars().take(40).flat_map(char::to_lowercase).collect();
     let (distance, best) = known
@@ -365,7 +371,7 @@ fn nearest<'a>(name: &str, known: impl Iterator<Item = &'a str>) -> Option<Strin
             (edit_distance(&letters, &other), candidate)
         })
         .min_by_key(|(distance, _)| *distance)?;
-    (3 * distance <= letters.len()).then(|| best.to_owned())
+    (letters.len() > 1 && distance <= (letters.len() / 3).max(1)).then(|| best.to_owned())
 }
 
 /// Letters to insert, remove or replace.

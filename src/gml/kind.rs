@@ -71,7 +71,7 @@ impl Kinds {
         NAMES.iter().position(|&name| name == value.kind()).map_or(Self::ANY, |bit| Self(1 << bit))
     }
 
-    /// The set in words: "number or vector".
+    /// The set in words: "a number or vector".
     pub(crate) fn describe(self) -> String {
         let names: Vec<&str> = NAMES
             .iter()
@@ -79,6 +79,7 @@ impl Kinds {
             .filter(|(bit, _)| self.0 & (1 << bit) != 0)
             .map(|(_, name)| *name)
             .collect();
-        if self == Self::ANY { "value".to_owned() } else { names.join(" or ") }
+        let names = if self == Self::ANY { "value".to_owned() } else { names.join(" or ") };
+        format!("{} {names}", if names.starts_with('a') { "an" } else { "a" })
     }
 }

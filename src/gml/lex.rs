@@ -1,6 +1,6 @@
 //! Characters to tokens: the part that scripts and rule files share, and the tokens of scripts.
 
-use super::source::{Diagnostic, Source, Span};
+use super::source::{Diagnostic, MOST_MISTAKES, Source, Span};
 use glam::{DVec2, DVec3};
 use std::sync::Arc;
 
@@ -86,6 +86,20 @@ impl Cursor {
             self.at += c.len_utf8();
         }
         here
+    }
+
+    /// Goes to the end of the text when `errors` holds so many mistakes that reading ends.
+    pub fn give_up(&mut self, errors: &[Diagnostic]) -> bool {
+        let enough = errors.len() >= MOST_MISTAKES;
+        if enough {
+            self.give_up_at_once();
+        }
+        enough
+    }
+
+    /// Goes to the end of the text.
+    pub fn give_up_at_once(&mut self) {
+        self.at = self.source.text.len();
     }
 
     /// Steps over space and comments.
@@ -187,23 +201,25 @@ impl Cursor {
     }
 }
 
-/// The tokens of a script up to the `}` that closes it (stepped over), or to the end of the text when `whole`.
-/// Mistakes are added to `errors` and left out of the tokens.
-pub fn script(cursor: &mut Cursor, whole: bool, errors: &mut Vec<Diagnostic>) -> Vec<(Token, Span)> {
+/// The tokens of a script: up to the `}` that closes the brace at `opened` (stepped over), else to the end of the
+/// text. Mistakes are added to `errors` and left out of the tokens.
+pub fn script(cursor: &mut Cursor, opened: Option<Span>, errors: &mut Vec<Diagnostic>) -> Vec<(Token, Span)> {
     let mut tokens: Vec<(Token, Span)> = Vec::new();
-    let opened = cursor.span_here();
     let mut depth = 0usize;
     loop {
         cursor.skip_space();
         let start = cursor.offset();
+        if cursor.give_up(errors) {
+            return tokens;
+        }
         if cursor.peek().is_none() {
-            if !whole {
+            if let Some(opened) = opened {
                 errors.push(cursor.error(opened, "this script is not closed: a `}` is missing"));
             }
             return tokens;
         }
         if cursor.peek() == Some('}') {
-            if depth == 0 && !whole {
+            if depth == 0 && opened.is_some() {
                 cursor.bump();
                 return tokens;
             }

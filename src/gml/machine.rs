@@ -361,13 +361,21 @@ impl Execution<'_, '_, '_> {
         stack.len().checked_sub(depth + 1).map(|at| stack[at]).ok_or_else(underflow)
     }
 
+    /// A value with its kind, for messages.
+    pub(super) fn describe(&self, value: &Value) -> String {
+        let shown = self.machine.show(value);
+        match value {
+            Value::Number(_) | Value::Text(_) | Value::Name(_) | Value::Vec2(_) | Value::Vec3(_) => {
+                format!("the {} {shown}", value.kind())
+            }
+            Value::Array(_) => format!("an {shown}"),
+            Value::Dict(_) | Value::Procedure(_) | Value::Mark => format!("a {shown}"),
+            Value::Node(_) => shown,
+        }
+    }
+
     pub(super) fn mismatch(&self, wanted: Kinds, found: Value) -> Fault {
-        error(format!(
-            "this needs a {}, but finds the {} {} on the stack",
-            wanted.describe(),
-            found.kind(),
-            self.machine.show(&found)
-        ))
+        error(format!("this needs {}, but finds {} on the stack", wanted.describe(), self.describe(&found)))
     }
 
     pub(super) fn pop_number(&mut self) -> Result<f64, Fault> {

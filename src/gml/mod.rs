@@ -33,3 +33,8 @@ pub use value::Value;
 pub(crate) use check::{Leaves, check};
 pub(crate) use compile::{compile_tokens, is_word};
 pub(crate) use lex::{Cursor, script};
+
+/// Names of the words of the language, in the order of the reference.
+pub fn words() -> impl Iterator<Item = &'static str> {
+    word::Word::ALL.iter().map(|word| word.signature().name)
+}

@@ -36,6 +36,11 @@ impl Strings {
         self.texts.get(id.0 as usize).map_or_else(|| "".into(), Arc::clone)
     }
 
+    /// All texts, by ascending id.
+    pub fn iter(&self) -> impl Iterator<Item = &str> {
+        self.texts.iter().map(|text| &**text)
+    }
+
     /// How many texts there are.
     pub fn len(&self) -> usize {
         self.texts.len()
@@ -88,6 +93,11 @@ pub struct Program {
 }
 
 impl Program {
+    /// The words that operation `op` was compiled from.
+    pub fn word(&self, op: usize) -> &str {
+        self.source.slice(self.spans.get(op).copied().unwrap_or_default())
+    }
+
     /// A message about operation `op`.
     pub(crate) fn error(&self, op: usize, message: impl Into<String>) -> Diagnostic {
         Diagnostic::new(&self.source, self.spans.get(op).copied().unwrap_or_default(), message)

@@ -13,6 +13,9 @@ pub struct Source {
     pub text: String,
 }
 
+/// Mistakes after which reading ends: who has so many wants to see the first ones.
+pub(crate) const MOST_MISTAKES: usize = 100;
+
 /// A range of bytes in a [`Source`].
 #[derive(Clone, Copy, PartialEq, Eq, Default, Debug)]
 pub struct Span {

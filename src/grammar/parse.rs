@@ -4,7 +4,9 @@ use super::error::RulesError;
 use super::pattern::{Pattern, infer_kinds};
 use super::plan::{Graph, NodePlan, Step, edges, number_tests};
 use super::ruleset::{Forbidden, Loader, Parameter, Rule, RuleSet};
-use crate::gml::{Cursor, Diagnostic, Leaves, Scope, Source, Span, check, compile_tokens, is_word, script};
+use crate::gml::{
+    Cursor, Diagnostic, Leaves, Scope, Source, Span, Strings, check, compile_tokens, is_word, script,
+};
 use crate::mesh::Domain;
 use std::sync::Arc;
 
@@ -12,6 +14,9 @@ use std::sync::Arc;
 const DEEPEST_INCLUDE: usize = 50;
 /// Bytes that a file may have.
 const LONGEST: usize = 1 << 24;
+/// Parameters and rules that a rule set may have.
+const MOST_PARAMETERS: usize = 1000;
+const MOST_RULES: usize = 10_000;
 const KEYWORDS: [&str; 4] = ["include", "parameter", "phase", "rule"];
 
 pub(super) fn parse(name: &str, text: &str, loader: &Loader<'_>) -> Result<RuleSet, RulesError> {
@@ -72,7 +77,7 @@ impl Reader<'_> {
         let first_error = self.errors.len();
         loop {
             cursor.skip_space();
-            if cursor.peek().is_none() {
+            if cursor.give_up(&self.errors) || cursor.peek().is_none() {
                 break;
             }
             if let Err(error) = self.item(&mut cursor) {
@@ -144,6 +149,9 @@ impl Reader<'_> {
         if self.rules.parameters.iter().any(|known| known.name == name) {
             return Err(cursor.error(span, format!("parameter `{name}` is declared twice")));
         }
+        if self.rules.parameters.len() == MOST_PARAMETERS {
+            return Err(cursor.error(span, format!("there are more than {MOST_PARAMETERS} parameters")));
+        }
         check_free(cursor, &name, span)?;
         let (default, default_span) = expect_number(cursor)?;
         expect_keyword(cursor, "range")?;
@@ -171,11 +179,15 @@ impl Reader<'_> {
     fn rule(&mut self, cursor: &mut Cursor) -> Result<(), Diagnostic> {
         let source = Arc::clone(cursor.source());
         let (name, span) = expect_name(cursor, "the name of a rule")?;
+        if self.rules.rules.len() == MOST_RULES {
+            cursor.give_up_at_once();
+            return Err(cursor.error(span, format!("there are more than {MOST_RULES} rules")));
+        }
         if self.rules.rules.iter().any(|known| known.name == name) {
             self.errors.push(cursor.error(span, format!("rule `{name}` is there twice")));
         }
-        expect_brace(cursor, "the pattern of the rule")?;
-        let pattern = Pattern::parse(cursor, &mut self.errors);
+        let brace = expect_brace(cursor, "the pattern of the rule")?;
+        let pattern = Pattern::parse(cursor, brace, &mut self.errors);
         for node in &pattern.nodes {
             if let Err(error) = self.check_node_name(cursor, &node.name, node.span) {
                 self.errors.push(error);
@@ -187,13 +199,12 @@ impl Reader<'_> {
         let names = &mut self.rules.names;
         let place: Vec<usize> = (0..nodes.len()).collect();
         let main_edges = edges(&pattern, &place, names);
-        let node_plan =
-            |node: &super::pattern::PatternNode, domain: Domain, names: &mut Vec<String>| NodePlan {
-                domain,
-                tests: number_tests(names, &node.tests),
-                boundary: node.boundary,
-                others: Vec::new(),
-            };
+        let node_plan = |node: &super::pattern::PatternNode, domain: Domain, names: &mut Strings| NodePlan {
+            domain,
+            tests: number_tests(names, &node.tests),
+            boundary: node.boundary,
+            others: Vec::new(),
+        };
         let plans: Vec<NodePlan> =
             pattern.nodes.iter().zip(&kinds).map(|(node, &domain)| node_plan(node, domain, names)).collect();
         let mut graph = Graph { nodes: plans, edges: main_edges };
@@ -210,12 +221,13 @@ impl Reader<'_> {
         let action = loop {
             cursor.skip_space();
             let start = cursor.offset();
+            let before = cursor.clone();
             let part = cursor.name();
             let part_span = if part.is_empty() { cursor.span_here() } else { cursor.span_from(start) };
             match part.as_str() {
                 "not" => {
-                    expect_brace(cursor, "a pattern")?;
-                    let inner = Pattern::parse(cursor, &mut self.errors);
+                    let brace = expect_brace(cursor, "a pattern")?;
+                    let inner = Pattern::parse(cursor, brace, &mut self.errors);
                     let mut place = Vec::new();
                     let mut known = Vec::new();
                     let mut count = nodes.len();
@@ -258,8 +270,8 @@ impl Reader<'_> {
                     forbidden.push(Forbidden { plans: rest.nodes, plan });
                 }
                 "where" | "action" => {
-                    expect_brace(cursor, "a script")?;
-                    let tokens = script(cursor, false, &mut self.errors);
+                    let brace = expect_brace(cursor, "a script")?;
+                    let tokens = script(cursor, Some(brace), &mut self.errors);
                     let end = cursor.offset();
                     let end = Span { start: end.saturating_sub(1), end };
                     let scope = Scope { nodes: &nodes, parameters: &parameters, read_only: part == "where" };
@@ -276,6 +288,7 @@ impl Reader<'_> {
                     conditions.push(program);
                 }
                 _ => {
+                    *cursor = before;
                     return Err(cursor.error(
                         part_span,
                         format!("expected `not`, `where` or `action` of rule `{name}` here"),
@@ -348,6 +361,7 @@ fn expect_number(cursor: &mut Cursor) -> Result<(f64, Span), Diagnostic> {
     let x = if cursor.at_number() {
         cursor.number()?
     } else {
+        let before = cursor.clone();
         match cursor.name().as_str() {
             "inf" => f64::INFINITY,
             "-inf" => f64::NEG_INFINITY,
@@ -356,6 +370,8 @@ fn expect_number(cursor: &mut Cursor) -> Result<(f64, Span), Diagnostic> {
                 if span.start == span.end {
                     span = cursor.span_here();
                 }
+                // What stands here may be a keyword at which reading goes on.
+                *cursor = before;
                 return Err(cursor.error(span, "expected a number"));
             }
         }
@@ -363,13 +379,11 @@ fn expect_number(cursor: &mut Cursor) -> Result<(f64, Span), Diagnostic> {
     Ok((x, cursor.span_from(start)))
 }
 
-fn expect_brace(cursor: &mut Cursor, what: &str) -> Result<(), Diagnostic> {
+/// Steps over `{`; gives its place.
+fn expect_brace(cursor: &mut Cursor, what: &str) -> Result<Span, Diagnostic> {
     cursor.skip_space();
-    if cursor.eat('{') {
-        Ok(())
-    } else {
-        Err(cursor.error(cursor.span_here(), format!("expected `{{` and {what}")))
-    }
+    let brace = cursor.span_here();
+    if cursor.eat('{') { Ok(brace) } else { Err(cursor.error(brace, format!("expected `{{` and {what}"))) }
 }
 
 /// To the next keyword of the file level: where reading goes on after a mistake.

@@ -89,9 +89,9 @@ pub(super) struct Pattern {
 }
 
 impl Pattern {
-    /// Reads a pattern up to its `}`, which is stepped over. Mistakes are added to `errors`.
-    pub(super) fn parse(cursor: &mut Cursor, errors: &mut Vec<Diagnostic>) -> Self {
-        let opened = cursor.span_here();
+    /// Reads a pattern, opened by the brace at `opened`, up to its `}`, which is stepped over. Mistakes are added to
+    /// `errors`.
+    pub(super) fn parse(cursor: &mut Cursor, opened: Span, errors: &mut Vec<Diagnostic>) -> Self {
         let mut pattern = Self::default();
         // The node and the label that the next node continues.
         let mut pending: Option<(usize, Label, Span)> = None;
@@ -99,6 +99,9 @@ impl Pattern {
         loop {
             cursor.skip_space();
             let start = cursor.offset();
+            if cursor.give_up(errors) {
+                break;
+            }
             match cursor.peek() {
                 None => {
                     errors.push(cursor.error(opened, "this pattern is not closed: a `}` is missing"));
@@ -132,6 +135,11 @@ impl Pattern {
             if name.starts_with(|c: char| c.is_ascii_digit()) {
                 errors.push(cursor.error(span, "the name of a node must not begin with a digit"));
             }
+            if pattern.nodes.len() > MOST_NODES {
+                errors.push(cursor.error(span, format!("a rule may have {MOST_NODES} nodes at most")));
+                cursor.give_up_at_once();
+                return Self { nodes: pattern.nodes[..1].to_vec(), edges: Vec::new() };
+            }
             let node = pattern.node(name, span);
             if cursor.eat('(') {
                 parse_tests(cursor, &mut pattern.nodes[node], errors);
@@ -147,10 +155,6 @@ impl Pattern {
         if pattern.nodes.is_empty() {
             errors.push(cursor.error(opened, "the pattern is empty"));
         }
-        if let Some(node) = pattern.nodes.get(MOST_NODES) {
-            errors.push(cursor.error(node.span, format!("a rule may have {MOST_NODES} nodes at most")));
-            pattern = Self { nodes: pattern.nodes[..1].to_vec(), edges: Vec::new() };
-        }
         pattern
     }
 
@@ -164,7 +168,7 @@ impl Pattern {
 
 /// Tests after `(`, up to `)`.
 fn parse_tests(cursor: &mut Cursor, node: &mut PatternNode, errors: &mut Vec<Diagnostic>) {
-    loop {
+    while !cursor.give_up(errors) {
         match parse_test(cursor) {
             Ok(test) if test.value.is_none() && test.attribute == "boundary" => node.boundary = true,
             Ok(test) => node.tests.push(test),

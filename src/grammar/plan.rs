@@ -1,6 +1,7 @@
 //! The order in which a pattern is matched, decided once when the rules are read.
 
 use super::pattern::{Label, Pattern, Test};
+use crate::gml::Strings;
 use crate::mesh::{Domain, Value};
 
 /// A name of an attribute or a link: index into the rule set's list, which each run turns into the mesh's symbols.
@@ -121,14 +122,11 @@ pub(super) struct Graph {
 }
 
 /// Gives each name a number.
-pub(super) fn number_name(names: &mut Vec<String>, name: &str) -> NameIndex {
-    names.iter().position(|known| known == name).unwrap_or_else(|| {
-        names.push(name.to_owned());
-        names.len() - 1
-    })
+pub(super) fn number_name(names: &mut Strings, name: &str) -> NameIndex {
+    names.intern(name).0 as usize
 }
 
-pub(super) fn number_tests(names: &mut Vec<String>, tests: &[Test]) -> Vec<NodeTest> {
+pub(super) fn number_tests(names: &mut Strings, tests: &[Test]) -> Vec<NodeTest> {
     tests
         .iter()
         .map(|test| NodeTest { name: number_name(names, &test.attribute), value: test.value.clone() })
@@ -136,7 +134,7 @@ pub(super) fn number_tests(names: &mut Vec<String>, tests: &[Test]) -> Vec<NodeT
 }
 
 /// The edges of a pattern whose node `i` is node `place[i]` of the rule.
-pub(super) fn edges(pattern: &Pattern, place: &[usize], names: &mut Vec<String>) -> Vec<(usize, Hop, usize)> {
+pub(super) fn edges(pattern: &Pattern, place: &[usize], names: &mut Strings) -> Vec<(usize, Hop, usize)> {
     pattern
         .edges
         .iter()

@@ -75,7 +75,7 @@ pub struct RuleSet {
     /// Phases in their order, as ranges of `rules`.
     pub(super) phases: Vec<std::ops::Range<usize>>,
     /// Names of attributes and links that patterns mention.
-    pub(super) names: Vec<String>,
+    pub(super) names: Strings,
     pub(super) strings: Strings,
 }
 

@@ -261,3 +261,63 @@ impl Attributes {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::mesh::{HalfEdgeId, VertexId};
+    use proptest::prelude::*;
+    use std::collections::BTreeMap;
+
+    proptest! {
+        #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(500) })]
+
+        /// A column is a map from ids to values.
+        #[test]
+        fn columns_are_maps(changes in prop::collection::vec((0..200u32, prop::option::of(0..3i32)), 0..300)) {
+            let mut attributes = Attributes::default();
+            let name = attributes.intern("n");
+            let mut map = BTreeMap::new();
+            for (id, number) in changes {
+                let value = number.map(|x| Value::Number(f64::from(x)));
+                let old = attributes.set(Node::Vertex(VertexId(id)), name, value.clone());
+                let expected = match value {
+                    Some(value) => map.insert(id, value),
+                    None => map.remove(&id),
+                };
+                prop_assert_eq!(old, expected);
+            }
+            for id in 0..200 {
+                prop_assert_eq!(attributes.get(Node::Vertex(VertexId(id)), name), map.get(&id));
+            }
+            prop_assert_eq!(attributes.with_name(Domain::Vertex, name), map.keys().copied().collect::<Vec<_>>());
+            for number in 0..3 {
+                let value = Value::Number(f64::from(number));
+                let ids: Vec<u32> = attributes.with_value(Domain::Vertex, name, &value).collect();
+                let expected: Vec<u32> = map.iter().filter(|(_, v)| **v == value).map(|(id, _)| *id).collect();
+                prop_assert_eq!(ids, expected);
+            }
+        }
+    }
+
+    #[test]
+    fn link_sources_are_listed_as_long_as_a_link_starts_there() {
+        let mut attributes = Attributes::default();
+        let label = attributes.intern("span");
+        let [a, b] = [3, 1].map(|id| Node::HalfEdge(HalfEdgeId(id)));
+        let v = Node::Vertex(VertexId(7));
+        for (from, to) in [(a, b), (a, v), (b, a), (v, a)] {
+            attributes.set_link(from, label, to, true);
+        }
+        let sources =
+            |attributes: &Attributes, domain| attributes.with_link(domain, label).collect::<Vec<_>>();
+        assert_eq!(sources(&attributes, Domain::HalfEdge), [1, 3]);
+        assert_eq!(sources(&attributes, Domain::Vertex), [7]);
+        attributes.set_link(a, label, b, false);
+        assert_eq!(sources(&attributes, Domain::HalfEdge), [1, 3]);
+        attributes.set_link(a, label, v, false);
+        assert_eq!(sources(&attributes, Domain::HalfEdge), [1]);
+        attributes.remap(|node| Some(Node::new(node.domain(), node.id() + 10)));
+        assert_eq!(sources(&attributes, Domain::HalfEdge), [11]);
+    }
+}

@@ -14,6 +14,14 @@ use rustc_hash::FxHashMap;
 const LONGEST_LIST: u32 = 16;
 
 impl Mesh {
+    /// Room for a feature beside what was read, so that the first change does not move tables of the mesh's size.
+    fn reserve_room(&mut self) {
+        self.half_edges.reserve(self.half_edges.len() / 8);
+        self.vertices.reserve(self.vertices.len() / 8);
+        self.positions.reserve(self.positions.len() / 8);
+        self.faces.reserve(self.faces.len() / 8);
+    }
+
     /// Builds the mesh. Vertex and face numbers are those of `polygons`; vertices without a face are kept.
     ///
     /// # Errors
@@ -59,6 +67,7 @@ impl Mesh {
             faces,
             ..Self::default()
         };
+        mesh.reserve_room();
         mesh.close_boundaries();
         let fans = mesh.separate_fans();
         if !fans.is_empty() {

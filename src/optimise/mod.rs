@@ -15,7 +15,7 @@ pub(crate) use linear::{LeastSquares, Row};
 use crate::job::{Cancelled, Job};
 use crate::mesh::{FaceId, Mesh, VertexId};
 use crate::subdivision::{LimitMask, limit_mask, vertex_normal};
-use crate::surface::{ClosestOptions, Facing, Foot, LimitSurface};
+use crate::surface::{ClosestOptions, Facing, Foot, Hit, LimitSurface};
 use glam::DVec3;
 use rustc_hash::FxHashMap;
 use serde::Serialize;
@@ -87,6 +87,11 @@ const LOOP_STEPS: u32 = 100;
 const SOLVE_STEPS: u32 = 3;
 /// Tolerance on the limit points, relative to `reach`.
 const TOLERANCE: f64 = 1e-7;
+
+/// Hits nearer than this share of the reach are taken as they are.
+const FAR: f64 = 0.05;
+/// A hit this many times as far away as the closest point is not taken.
+const GRAZING: f64 = 2.0;
 
 /// The frozen surface that a fit aims at.
 #[derive(Clone, Debug)]
@@ -173,13 +178,20 @@ struct Lines {
     normals: Vec<DVec3>,
     /// Signed distance along the normal from the limit point to the frozen surface.
     gaps: Vec<f64>,
+    /// Where the lines met the frozen surface last.
+    hits: Vec<Option<Hit>>,
 }
 
 impl Lines {
     /// Steps 1 to 4 of the paper: foot of each limit point along the control normal, and the normal there.
     fn aim(mesh: &Mesh, vertices: &[VertexId], target: &Target, missed: &mut Vec<u32>) -> Self {
-        let mut lines =
-            Self { vertices: Vec::new(), masks: Vec::new(), normals: Vec::new(), gaps: Vec::new() };
+        let mut lines = Self {
+            vertices: Vec::new(),
+            masks: Vec::new(),
+            normals: Vec::new(),
+            gaps: Vec::new(),
+            hits: Vec::new(),
+        };
         for &v in vertices {
             let mask = limit_mask(mesh, v);
             let point = apply(mesh, &mask);
@@ -192,6 +204,7 @@ impl Lines {
             lines.normals.push(normal);
         }
         lines.gaps = vec![0.0; lines.vertices.len()];
+        lines.hits = vec![None; lines.vertices.len()];
         lines
     }
 
@@ -213,10 +226,23 @@ impl Lines {
     /// Step 7: how far the limit points are from the frozen surface; returns the largest distance.
     fn measure(&mut self, mesh: &Mesh, target: &Target) -> f64 {
         let mut largest = 0.0_f64;
-        for ((mask, normal), gap) in self.masks.iter().zip(&self.normals).zip(&mut self.gaps) {
+        for (i, (mask, normal)) in self.masks.iter().zip(&self.normals).enumerate() {
             let point = apply(mesh, mask);
-            *gap = gap_along(target, point, *normal).unwrap_or(0.0);
-            largest = largest.max(gap.abs());
+            let near = self.hits[i].and_then(|hit| target.surface.line_hit_near(&hit, point, *normal));
+            self.hits[i] = near
+                .filter(|hit| hit.s.abs() <= target.reach && hit.normal.dot(*normal) > 0.0)
+                .or_else(|| target.surface.nearest_line_hit(point, *normal, target.reach, *normal));
+            if self.hits[i].is_some_and(|hit| is_grazing(target, point, &hit)) {
+                self.hits[i] = None;
+            }
+            self.gaps[i] = match &self.hits[i] {
+                Some(hit) => hit.s,
+                None => {
+                    let foot = closest(target, point, Some(*normal));
+                    foot.map_or(0.0, |foot| (foot.position - point).dot(*normal))
+                }
+            };
+            largest = largest.max(self.gaps[i].abs());
         }
         largest
     }
@@ -245,15 +271,17 @@ fn apply(mesh: &Mesh, mask: &LimitMask) -> DVec3 {
 fn foot_normal(target: &Target, point: DVec3, direction: Option<DVec3>) -> Option<DVec3> {
     direction
         .and_then(|n| target.surface.nearest_line_hit(point, n, target.reach, n))
+        .filter(|hit| !is_grazing(target, point, hit))
         .map(|hit| hit.normal)
         .or_else(|| closest(target, point, direction).map(|foot| foot.normal))
         .filter(|normal| *normal != DVec3::ZERO)
 }
 
-/// The signed distance along the unit normal `m` from `point` to the frozen surface.
-fn gap_along(target: &Target, point: DVec3, m: DVec3) -> Option<f64> {
-    let hit = target.surface.nearest_line_hit(point, m, target.reach, m).map(|hit| hit.s);
-    hit.or_else(|| closest(target, point, Some(m)).map(|foot| (foot.position - point).dot(m)))
+/// True when the surface is much nearer to `point` than the hit of its line: beside sharp folds the control normal may
+/// run along the surface, and the hit is on a part that the point has nothing to do with.
+fn is_grazing(target: &Target, point: DVec3, hit: &Hit) -> bool {
+    hit.s.abs() > FAR * target.reach
+        && closest(target, point, Some(hit.normal)).is_some_and(|foot| hit.s.abs() > GRAZING * foot.distance)
 }
 
 /// The closest point within reach whose normal is on the side of `direction`.

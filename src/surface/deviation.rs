@@ -9,6 +9,11 @@ use crate::mesh::{FaceId, Mesh};
 use glam::DVec3;
 use serde::Serialize;
 
+/// The usual number of samples per side of a face.
+pub const SAMPLES: usize = 8;
+/// Distances below this share of the size are looked for along the normal first.
+const NEAR: f64 = 0.1;
+
 /// The distance at one point of the surface that is measured.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub struct DeviationSample {
@@ -85,13 +90,25 @@ pub fn deviation_samples(
             for cell in 0..cells * cells {
                 let (u, v) = (((cell % cells) as f64 + 0.5) * width, ((cell / cells) as f64 + 0.5) * width);
                 let Some(point) = from.evaluate(face, corner, u, v) else { continue };
-                let Some(signed) = to.signed_distance(point.position, point.normal) else { continue };
+                let Some(signed) = distance_to(to, point.position, point.normal) else { continue };
                 let area = point.du.cross(point.dv).length() * width * width;
                 samples.push(DeviationSample { face, corner, u, v, position: point.position, area, signed });
             }
         }
     }
     samples
+}
+
+/// [`LimitSurface::signed_distance`], fast where the surfaces are close: the foot near the hit of the sample's normal.
+fn distance_to(to: &LimitSurface, point: DVec3, normal: DVec3) -> Option<f64> {
+    let foot = to
+        .nearest_line_hit(point, normal, NEAR * to.size(), normal)
+        .and_then(|hit| to.foot_near(&hit, point).filter(|foot| foot.distance <= hit.s.abs()))
+        .filter(|foot| foot.normal.dot(normal) > 0.0);
+    match foot {
+        Some(foot) => Some(foot.distance.copysign((point - foot.position).dot(foot.normal))),
+        None => to.signed_distance(point, normal, NEAR * to.size()),
+    }
 }
 
 /// The deviation of `from` (in the faces that `choose` accepts) from `to`, one way; see [`deviation_samples`].

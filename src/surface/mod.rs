@@ -12,10 +12,11 @@ mod freeze;
 mod line;
 mod line_piece;
 mod minimise;
+mod near;
 mod tree;
 
 pub use closest::{ClosestOptions, Facing, Foot};
-pub use deviation::{Comparison, Deviation, DeviationSample, compare, deviation, deviation_samples};
+pub use deviation::{Comparison, Deviation, DeviationSample, SAMPLES, compare, deviation, deviation_samples};
 pub use line::Hit;
 
 use crate::mesh::{FaceId, Mesh};
@@ -141,11 +142,11 @@ impl LimitSurface {
     }
 
     /// The distance of `point` to the surface, positive on the side of its normals. The closest point whose normal
-    /// has an angle below 90 degrees with `normal` counts; where there is none, the closest point. `None` when the
-    /// surface is empty or a coordinate is not finite.
-    pub fn signed_distance(&self, point: DVec3, normal: DVec3) -> Option<f64> {
-        let facing =
-            ClosestOptions { facing: Some(Facing { normal, min_cosine: 0.0 }), ..Default::default() };
+    /// has an angle below 90 degrees with `normal` counts, so that a thin wall does not snap to its other side; where
+    /// there is none within `reach` (the point belongs to a fold), the closest point. `None` when the surface is empty
+    /// or a coordinate is not finite.
+    pub fn signed_distance(&self, point: DVec3, normal: DVec3, reach: f64) -> Option<f64> {
+        let facing = ClosestOptions { radius: reach, facing: Some(Facing { normal, min_cosine: 0.0 }) };
         let foot =
             self.closest(point, &facing).or_else(|| self.closest(point, &ClosestOptions::default()))?;
         Some(foot.distance.copysign((point - foot.position).dot(foot.normal)))

@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+#[allow(dead_code, reason = "not every test that shares this module reads them")]
 /// The folder of test meshes beside the project; `None`, and a line on standard output, where it is absent.
 pub fn shared_data() -> Option<PathBuf> {
     let folder = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../shared/data");
