@@ -143,6 +143,31 @@ extern "C" {
 #define WELT_NONE 4294967295
 
 /*
+ Faces at a boundary vertex are no part of the surface, unless all boundary edges there are infinitely sharp.
+ */
+#define WELT_BOUNDARY_NONE 0
+
+/*
+ The boundary is a cubic B-spline curve. The default.
+ */
+#define WELT_BOUNDARY_EDGE_ONLY 1
+
+/*
+ As WELT_BOUNDARY_EDGE_ONLY, but vertices of a single face stay where they are.
+ */
+#define WELT_BOUNDARY_EDGE_AND_CORNER 2
+
+/*
+ Sharpness falls by one from level to level. The default.
+ */
+#define WELT_CREASING_UNIFORM 0
+
+/*
+ Sharpness falls by one from level to level after it was averaged along the crease (Chaikin).
+ */
+#define WELT_CREASING_CHAIKIN 1
+
+/*
  Wavefront OBJ.
  */
 #define WELT_FORMAT_OBJ 0
@@ -505,6 +530,70 @@ int32_t welt_mesh_edges(const welt_mesh *mesh,
                         welt_error **error);
 
 /*
+ Sets the options under which a mesh is subdivided.
+
+ mesh: must not be NULL.
+ boundary: one of WELT_BOUNDARY_*.
+ creasing: one of WELT_CREASING_*.
+
+ Since: 0.1.
+ */
+WELT_API
+int32_t welt_mesh_set_subdivision(welt_mesh *mesh,
+                                  uint32_t boundary,
+                                  uint32_t creasing,
+                                  welt_error **error);
+
+/*
+ Sets the sharpness of edges.
+
+ mesh: must not be NULL.
+ vertices: the two vertices of each edge.
+ sharpness: of each edge, 0 (smooth) or more; 10 and more is infinitely sharp.
+ count: number of edges.
+
+ Fails with WELT_ERROR_MESH where two vertices are not joined by an edge; the mesh is as it was then. Since: 0.1.
+ */
+WELT_API
+int32_t welt_mesh_set_edge_sharpness(welt_mesh *mesh,
+                                     const uint32_t *vertices,
+                                     const float *sharpness,
+                                     size_t count,
+                                     welt_error **error);
+
+/*
+ Sets the sharpness of vertices.
+
+ mesh: must not be NULL.
+ vertices: the vertices.
+ sharpness: of each vertex, 0 (smooth) or more; 10 and more is infinitely sharp.
+ count: number of vertices.
+
+ After a failure the mesh is as it was before. Since: 0.1.
+ */
+WELT_API
+int32_t welt_mesh_set_vertex_sharpness(welt_mesh *mesh,
+                                       const uint32_t *vertices,
+                                       const float *sharpness,
+                                       size_t count,
+                                       welt_error **error);
+
+/*
+ Says which faces are holes: faces that are subdivided like others but are no part of the surface.
+
+ mesh: must not be NULL.
+ faces: the holes; all other faces are none.
+ count: number of holes.
+
+ After a failure the mesh is as it was before. Since: 0.1.
+ */
+WELT_API
+int32_t welt_mesh_set_holes(welt_mesh *mesh,
+                            const uint32_t *faces,
+                            size_t count,
+                            welt_error **error);
+
+/*
  Sets options to their defaults. options: must not be NULL. size: sizeof *options. Fails with WELT_ERROR_ARGUMENT where the
  size is none that the library knows, which is so when the program was compiled for a newer one. Since: 0.1.
  */
@@ -718,6 +807,41 @@ int32_t welt_refinement_face_parents(const welt_refinement *refinement,
                                      uint32_t *corners,
                                      size_t capacity,
                                      welt_error **error);
+
+/*
+ Refines a triangle mesh by Loop's rules, with its sharpness and options.
+
+ mesh: must not be NULL.
+ levels: how often; each time one triangle becomes four.
+ refined: receives the last level, another control mesh of the same surface: it has the sharpness that is left, and holes
+ where the mesh has no surface. Free it with welt_mesh_free.
+
+ At each step the vertices are those of the vertices, then those of the edges in the order of welt_mesh_edges; faces 4 f to
+ 4 f + 2 lie at the corners of face f, and 4 f + 3 is the one in its middle. Fails with WELT_ERROR_MESH where a face is
+ no triangle and with WELT_ERROR_TOO_LARGE. Since: 0.1.
+ */
+WELT_API
+int32_t welt_mesh_refine_loop(const welt_mesh *mesh,
+                              uint32_t levels,
+                              welt_mesh **refined,
+                              welt_error **error);
+
+/*
+ Writes the point and the unit normal of the Loop limit surface at each vertex of a triangle mesh.
+
+ mesh: must not be NULL.
+ positions: receives x, y and z of each point.
+ normals: receives x, y and z of each normal, outwards; (0, 0, 0) where there is none. NULL where they are not wanted.
+ capacity: room in each of both, at least 3 * welt_mesh_vertex_count(mesh) doubles.
+
+ Fails with WELT_ERROR_MESH where a face is no triangle. Since: 0.1.
+ */
+WELT_API
+int32_t welt_mesh_loop_limit(const welt_mesh *mesh,
+                             double *positions,
+                             double *normals,
+                             size_t capacity,
+                             welt_error **error);
 
 /*
  Finds the edges that selectors name.
@@ -987,6 +1111,34 @@ int32_t welt_surface_create(const welt_mesh *mesh,
  Frees a surface. NULL is allowed. Since: 0.1.
  */
 WELT_API void welt_surface_free(welt_surface *surface);
+
+/*
+ Evaluates the limit surface at parameters of faces.
+
+ surface: must not be NULL.
+ faces: the face of each point.
+ corners: the patch of each point; NULL for 0 everywhere. A quad has patch 0 only, another face one per corner.
+ parameters: u and v of each point, in [0, 1]; what lies outside is moved to the nearest inside. On a quad (0, 0) is its
+ first corner, u runs along the first edge and v against the last one. On patch c of another face (0, 0) is corner c,
+ (1, 0) the middle of the edge that leaves it, (0, 1) that of the edge that arrives, (1, 1) the face point.
+ count: number of points.
+ values: receives per point the position, the derivatives by u and by v, and those by u twice, by u and v, by v twice: 18
+ doubles. At an extraordinary vertex the first derivatives are tangents of conventional length, and the second ones,
+ which are not defined, are NaN. Where the surface has no part of the face, which may not have been frozen or is a hole
+ or left out by the boundary rule, all are NaN.
+ capacity: room in values, at least 18 * count doubles.
+
+ Fails with WELT_ERROR_ARGUMENT where a face has no such patch, or a parameter is NaN. Since: 0.1.
+ */
+WELT_API
+int32_t welt_surface_evaluate(const welt_surface *surface,
+                              const uint32_t *faces,
+                              const uint32_t *corners,
+                              const double *parameters,
+                              size_t count,
+                              double *values,
+                              size_t capacity,
+                              welt_error **error);
 
 /*
  Moves vertices so that their limit points lie on a frozen surface.

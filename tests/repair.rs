@@ -232,3 +232,17 @@ fn ply_messages_name_the_element() {
         assert!(error.contains(part), "{part}\nis not in\n{error}");
     }
 }
+
+#[test]
+fn holes_keep_to_their_faces() {
+    // Face 0 has no area and goes; the hole, face 2, becomes face 1.
+    let text = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 2\nf 1 2 3\nf 1 3 4\nt hole 1/0/0 2\n";
+    let options = welt::io::ImportOptions { repair: true, ..Default::default() };
+    let import =
+        welt::io::import_bytes("a.obj", welt::io::Format::Obj, text.as_bytes(), &options).expect("a mesh");
+    assert_eq!(import.mesh.to_polygons().holes, [1]);
+    let text = text.replace("1/0/0 2", "1/0/0 3");
+    let error = welt::io::import_bytes("a.obj", welt::io::Format::Obj, text.as_bytes(), &options)
+        .expect_err("no face 3");
+    assert!(error.to_string().contains("a.obj:8:14: a tag names face 3, but the file has 3"), "{error}");
+}

@@ -6,7 +6,7 @@ use glam::{DVec2, DVec3};
 use proptest::prelude::*;
 use std::path::{Path, PathBuf};
 use welt::io::{self, Format, ImportOptions, obj, ply};
-use welt::mesh::{FaceSet, Mesh, Polygons};
+use welt::mesh::{BoundaryRule, Creasing, FaceSet, Mesh, Polygons, SubdivisionOptions};
 
 fn read(format: Format, bytes: &[u8]) -> io::Source {
     io::read_bytes("written", format, bytes, &ImportOptions::default()).expect("what was written can be read")
@@ -142,6 +142,11 @@ fn everything() -> Polygons {
         material_libraries: vec!["chair one.mtl".into(), "b.mtl".into()],
         creases: vec![(1, 2, 2.5), (2, 4, 0.1), (0, 1, f32::INFINITY)],
         corners: vec![(3, 10.0)],
+        holes: vec![1],
+        subdivision: SubdivisionOptions {
+            boundary: BoundaryRule::EdgeAndCorner,
+            creasing: Creasing::Chaikin,
+        },
     }
 }
 

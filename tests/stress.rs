@@ -183,7 +183,7 @@ fn limits_are_checked_while_reading() {
 #[test]
 fn what_is_ignored_is_counted() {
     let text = "vn 0 0 1\nv 0 0 0 0.5 0.5 nan\nv 1 0 0 2\nv 1 1 0 1\nv 0 1 0 1 2\nvt 0 0 0.5\nl 1 2\np 1\np 2\n\
-                curv 0 1 1 2\nlod 3\nfoo bar\ng empty\ng full\nf 1/1 2/7 3/0 4/-9\nt hole 1/0/0 0\n\
+                curv 0 1 1 2\nlod 3\nfoo bar\ng empty\ng full\nf 1/1 2/7 3/0 4/-9\nt vertexedit 1/0/0 0\n\
                 t crease 2/1/0 0 2 1\no nothing\n";
     let import = import("a.obj", text.as_bytes(), &ImportOptions::default()).expect("a quad");
     let found: Vec<_> = import.report.ignored.iter().map(|i| (i.kind, i.count, i.first_line)).collect();

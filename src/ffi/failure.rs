@@ -59,6 +59,11 @@ impl Place {
     pub(super) fn vertex(vertex: u32, message: impl Into<String>) -> Self {
         Self { location: Location::Vertex(vertex), message: message.into(), text: None }
     }
+
+    /// An edge, by its vertices.
+    pub(super) fn edge(edge: (u32, u32), message: impl Into<String>) -> Self {
+        Self { location: Location::Edge(edge.0, edge.1), message: message.into(), text: None }
+    }
 }
 
 impl From<&Defect> for Place {

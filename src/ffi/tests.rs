@@ -340,3 +340,85 @@ fn options_of_other_sizes_and_bad_strings_are_refused() {
         assert!(take(&mut error).1.contains("absent.obj: cannot be read"));
     }
 }
+
+#[test]
+fn sharpness_and_evaluation_check_their_arguments() {
+    let mesh = tetrahedron();
+    let mut error = null_mut();
+    let mut surface = null_mut();
+    let mut values = [0.0; 36];
+    let out = values.as_mut_ptr();
+    // SAFETY: handles live until they are freed; arrays have the counts that are passed, or the call has to notice first.
+    unsafe {
+        assert_eq!(welt_mesh_set_subdivision(mesh, 3, 0, &mut error), WELT_ERROR_ARGUMENT);
+        assert!(take(&mut error).1.contains("WELT_BOUNDARY_"));
+        assert_eq!(welt_mesh_set_subdivision(mesh, 0, 2, &mut error), WELT_ERROR_ARGUMENT);
+        assert!(take(&mut error).1.contains("WELT_CREASING_"));
+        assert_eq!(welt_mesh_set_subdivision(null_mut(), 0, 0, &mut error), WELT_ERROR_ARGUMENT);
+        assert_eq!(take(&mut error).1, "mesh is NULL");
+
+        let (ends, bad) = ([0u32, 1, 1, 1], [1.0f32, f32::NAN]);
+        assert_eq!(
+            welt_mesh_set_edge_sharpness(mesh, ends.as_ptr(), bad.as_ptr(), 2, &mut error),
+            WELT_ERROR_ARGUMENT
+        );
+        assert!(take(&mut error).1.contains("NaN"));
+        let sharp = [10.0f32, 10.0];
+        assert_eq!(
+            welt_mesh_set_edge_sharpness(mesh, ends.as_ptr(), sharp.as_ptr(), 2, &mut error),
+            WELT_ERROR_MESH
+        );
+        assert_eq!(welt_error_place_count(error), 1);
+        take(&mut error);
+        let too_many = usize::MAX;
+        assert_eq!(
+            welt_mesh_set_edge_sharpness(mesh, ends.as_ptr(), sharp.as_ptr(), too_many, &mut error),
+            WELT_ERROR_ARGUMENT
+        );
+        take(&mut error);
+        assert_eq!(
+            welt_mesh_set_vertex_sharpness(mesh, [4].as_ptr(), sharp.as_ptr(), 1, &mut error),
+            WELT_ERROR_ARGUMENT
+        );
+        assert!(take(&mut error).1.contains("there is no vertex 4"));
+        assert_eq!(welt_mesh_set_holes(mesh, [4].as_ptr(), 1, &mut error), WELT_ERROR_ARGUMENT);
+        assert!(take(&mut error).1.contains("there is no face 4"));
+
+        // A corner stays where it is, and a hole has no surface.
+        assert_eq!(
+            welt_mesh_set_vertex_sharpness(mesh, [0].as_ptr(), sharp.as_ptr(), 1, null_mut()),
+            WELT_OK
+        );
+        assert_eq!(welt_mesh_set_holes(mesh, [2].as_ptr(), 1, null_mut()), WELT_OK);
+        assert_eq!(welt_surface_create(mesh, null(), 0, &mut surface, null_mut()), WELT_OK);
+        let (faces, corners, parameters) = ([0u32, 2], [0u32, 1], [0.0f64, 0.0, 0.5, 0.5]);
+        let (f, c, p) = (faces.as_ptr(), corners.as_ptr(), parameters.as_ptr());
+        assert_eq!(welt_surface_evaluate(surface, f, c, p, 2, out, 35, &mut error), WELT_ERROR_BUFFER);
+        take(&mut error);
+        assert_eq!(welt_surface_evaluate(surface, f, c, p, 2, out, 36, null_mut()), WELT_OK);
+        assert_eq!(values[..3], TETRAHEDRON[..3]);
+        assert!(values[18..].iter().all(|value| value.is_nan()));
+        assert_eq!(
+            welt_surface_evaluate(surface, f, [3, 0].as_ptr(), p, 2, out, 36, &mut error),
+            WELT_ERROR_ARGUMENT
+        );
+        assert_eq!(take(&mut error).1, "face 0 has no patch 3");
+        let nowhere = [f64::NAN; 4];
+        assert_eq!(
+            welt_surface_evaluate(surface, f, c, nowhere.as_ptr(), 2, out, 36, &mut error),
+            WELT_ERROR_ARGUMENT
+        );
+        assert!(take(&mut error).1.contains("NaN"));
+        welt_surface_free(surface);
+
+        let mut refined = null_mut();
+        assert_eq!(welt_mesh_refine_loop(mesh, 2, &mut refined, null_mut()), WELT_OK);
+        assert_eq!((welt_mesh_face_count(refined), welt_mesh_vertex_count(refined)), (64, 34));
+        welt_mesh_free(refined);
+        assert_eq!(welt_mesh_refine_loop(mesh, u32::MAX, &mut refined, &mut error), WELT_ERROR_TOO_LARGE);
+        take(&mut error);
+        assert_eq!(welt_mesh_loop_limit(mesh, out, null_mut(), 12, null_mut()), WELT_OK);
+        assert_eq!(values[..3], TETRAHEDRON[..3]);
+        welt_mesh_free(mesh);
+    }
+}

@@ -31,7 +31,7 @@ pub enum IgnoredKind {
     FreeFormGeometry,
     /// Statements about display, levels of detail and merging.
     DisplaySettings,
-    /// `t` tags other than `crease` and `corner`.
+    /// `t` tags that have no meaning here: hierarchical edits, face-varying rules and others.
     Tags,
     /// Creases between vertices that share no edge.
     CreasesWithoutEdge,
@@ -62,7 +62,7 @@ impl IgnoredKind {
             Self::Lines => "line statements",
             Self::FreeFormGeometry => "curve and surface statements",
             Self::DisplaySettings => "display statements",
-            Self::Tags => "tags other than crease and corner",
+            Self::Tags => "tags of kinds that are not used",
             Self::CreasesWithoutEdge => "creases between vertices without an edge",
             Self::NamesWithoutFaces => "group, object, material or smoothing statements without faces",
             Self::NamesNotUtf8 => "names that are not UTF-8 (replaced in part)",

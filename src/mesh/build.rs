@@ -165,6 +165,12 @@ impl Mesh {
                 self.set_vertex_sharpness(super::VertexId(v), sharpness);
             }
         }
+        self.subdivision = polygons.subdivision;
+        for &face in &polygons.holes {
+            if (face as usize) < self.faces.len() {
+                self.write_hole(face, true);
+            }
+        }
     }
 }
 

@@ -118,6 +118,7 @@ impl Mesh {
         self.edge_sharpness = edges.into_iter().map(|(e, s)| (map.edges[e as usize], s)).collect();
         let vertices = std::mem::take(&mut self.vertex_sharpness);
         self.vertex_sharpness = vertices.into_iter().map(|(v, s)| (map.vertices[v as usize], s)).collect();
+        self.hole_faces = self.hole_faces.iter().map(|&f| map.faces[f as usize]).collect();
         map
     }
 
@@ -132,12 +133,16 @@ impl Mesh {
             sets: self.sets.clone(),
             texcoords: self.texcoords.clone(),
             material_libraries: self.material_libraries.clone(),
+            subdivision: self.subdivision,
             ..Polygons::default()
         };
         for f in self.faces() {
             let start = polygons.face_vertices.len();
             polygons.face_vertices.extend(self.face_vertices(f).map(|v| vertex_numbers[v.index()]));
             polygons.face_sizes.push((polygons.face_vertices.len() - start) as u32);
+            if self.is_hole(f) {
+                polygons.holes.push(polygons.face_sizes.len() as u32 - 1);
+            }
             if let Some(&set) = self.face_sets.get(f.index()) {
                 polygons.face_sets.push(set);
             }

@@ -404,6 +404,7 @@ impl Mesh {
             self.face_sets.push(set);
         }
         self.log.push(Change::FaceAdded);
+        self.set_hole(FaceId(id), like.is_some_and(|f| self.is_hole(f)));
         FaceId(id)
     }
 
@@ -429,6 +430,7 @@ impl Mesh {
 
     fn remove_face(&mut self, f: FaceId) {
         self.strip(Node::Face(f));
+        self.set_hole(f, false);
         self.write_face(f, DEAD);
         self.add_hole();
     }

@@ -32,6 +32,8 @@ pub(crate) enum Change {
     EdgeSharpness { edge: u32, old: f32 },
     VertexSharpness { vertex: u32, old: f32 },
     CornerTexcoord { id: u32, old: u32 },
+    Subdivision { old: super::SubdivisionOptions },
+    HoleFace { face: u32, was: bool },
 }
 
 #[derive(Clone, Default, Debug)]

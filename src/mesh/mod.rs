@@ -14,6 +14,7 @@ mod euler;
 mod ids;
 mod log;
 mod polygons;
+mod scheme;
 mod transaction;
 mod validate;
 mod value;
@@ -26,6 +27,7 @@ pub use euler::EulerError;
 pub use ids::{Domain, FaceId, HalfEdgeId, Node, VertexId};
 pub use log::Checkpoint;
 pub use polygons::{FaceSet, Polygons};
+pub use scheme::{BoundaryRule, Creasing, SubdivisionOptions};
 pub use validate::Violation;
 pub use value::Value;
 
@@ -33,7 +35,7 @@ use attributes::Attributes;
 use glam::{DVec2, DVec3};
 use ids::{DEAD, NONE};
 use log::{Change, Log};
-use rustc_hash::FxHashMap;
+use rustc_hash::{FxHashMap, FxHashSet};
 
 /// One half-edge. `source` is where it starts; its face lies on its left.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -69,6 +71,9 @@ pub struct Mesh {
     attributes: Attributes,
     edge_sharpness: FxHashMap<u32, f32>,
     vertex_sharpness: FxHashMap<u32, f32>,
+    subdivision: SubdivisionOptions,
+    /// Faces that are no part of the surface.
+    hole_faces: FxHashSet<u32>,
     texcoords: Vec<DVec2>,
     /// Per half-edge, the texture coordinate of the corner at its source; empty when the mesh has none.
     corner_texcoords: Vec<u32>,

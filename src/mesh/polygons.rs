@@ -1,5 +1,6 @@
 //! Polygons as a file or a caller holds them: flat arrays, before the half-edge mesh is built and after it is done.
 
+use super::SubdivisionOptions;
 use glam::{DVec2, DVec3};
 
 /// A group and a material that faces can belong to. Faces refer to it by index.
@@ -41,6 +42,10 @@ pub struct Polygons {
     pub creases: Vec<(u32, u32, f32)>,
     /// Corner vertices and their sharpness.
     pub corners: Vec<(u32, f32)>,
+    /// Faces that are no part of the surface, though they are subdivided.
+    pub holes: Vec<u32>,
+    /// How the polygons are subdivided.
+    pub subdivision: SubdivisionOptions,
 }
 
 impl Polygons {

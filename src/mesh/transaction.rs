@@ -76,6 +76,8 @@ impl Mesh {
                 set_or_remove(&mut self.vertex_sharpness, vertex, old);
             }
             Change::CornerTexcoord { id, old } => self.corner_texcoords[id as usize] = old,
+            Change::Subdivision { old } => self.subdivision = old,
+            Change::HoleFace { face, was } => self.write_hole(face, was),
         }
     }
 

@@ -1,5 +1,6 @@
 //! Exact evaluation of the limit surface at any parameter of any face.
 
+use super::has_limit;
 use super::patch::{Evaluated, Patch};
 use crate::mesh::{FaceId, Mesh};
 use glam::DVec3;
@@ -38,19 +39,19 @@ impl From<Evaluated> for SurfacePoint {
     }
 }
 
-/// Evaluates the Catmull-Clark limit surface of `mesh` (boundary rule edge-only).
+/// Evaluates the Catmull-Clark limit surface of `mesh`, with its sharpness and options.
 ///
 /// A quad has `corner` 0 only, with (u, v) in [0, 1]^2 from its first corner, u along the first edge and v against
 /// the last one. A face of k edges has one quadrant per corner: (0, 0) is the corner, (1, 0) the middle of the edge
 /// to the next corner, (0, 1) the middle of the edge from the previous corner, (1, 1) the face point. Parameters
-/// outside [0, 1] are moved to the nearest inside. `None` for a face or corner that does not exist and for NaN.
+/// outside [0, 1] are moved to the nearest inside. `None` for a face or corner that does not exist, for a face without
+/// a limit surface ([`has_limit`](super::has_limit)) and for NaN.
 ///
 /// Each call builds the patch anew from the faces around; for many points in the same faces freeze a
 /// [`LimitSurface`](crate::surface::LimitSurface).
 pub fn evaluate(mesh: &Mesh, face: FaceId, corner: usize, u: f64, v: f64) -> Option<SurfacePoint> {
-    if u.is_nan() || v.is_nan() {
+    if u.is_nan() || v.is_nan() || !mesh.has_face(face) || !has_limit(mesh, face) {
         return None;
     }
-    let patch = Patch::of_corner(mesh, face, corner)?;
-    Some(patch.evaluate(u.clamp(0.0, 1.0), v.clamp(0.0, 1.0)).into())
+    Patch::evaluate_at(mesh, face, corner, u.clamp(0.0, 1.0), v.clamp(0.0, 1.0)).map(Into::into)
 }

@@ -1,7 +1,8 @@
 //! Points of the limit surface at the vertices of a control mesh.
 
-use super::mask::{RingMask, position_mask, tangent_masks};
+use super::mask::{RingMask, position_mask, sharp_masks, tangent_masks};
 use super::ring::{LargeFaces, Ring, RingShape};
+use super::sharpness::all_smooth;
 use crate::mesh::{HalfEdgeId, Mesh, VertexId};
 use glam::DVec3;
 use rustc_hash::FxHashMap;
@@ -12,8 +13,8 @@ use smallvec::SmallVec;
 pub struct LimitPoint {
     /// Where the vertex goes.
     pub position: DVec3,
-    /// Two tangents; see [`limit_tangent_masks`](super::limit_tangent_masks) for what they are. Zero at an isolated
-    /// vertex.
+    /// Two tangents; see [`limit_tangent_masks`](super::limit_tangent_masks) for what they are. Zero where there are
+    /// none.
     pub tangents: [DVec3; 2],
 }
 
@@ -48,7 +49,7 @@ fn scaled(vector: DVec3) -> DVec3 {
 /// # Panics
 /// When there is no such vertex.
 pub fn limit_position(mesh: &Mesh, v: VertexId) -> DVec3 {
-    position(mesh, v, &mut Shared::default())
+    position(mesh, v, &mut Shared::new(mesh))
 }
 
 /// Position and tangents of the limit surface at `v`.
@@ -56,7 +57,7 @@ pub fn limit_position(mesh: &Mesh, v: VertexId) -> DVec3 {
 /// # Panics
 /// When there is no such vertex.
 pub fn limit_point(mesh: &Mesh, v: VertexId) -> LimitPoint {
-    point(mesh, v, &mut Shared::default())
+    point(mesh, v, &mut Shared::new(mesh))
 }
 
 /// The unit normal of the limit surface at `v`, outwards; `None` at an isolated vertex and where the tangents do not
@@ -70,26 +71,51 @@ pub fn limit_normal(mesh: &Mesh, v: VertexId) -> Option<DVec3> {
 
 /// [`limit_position`] of every vertex id; a removed vertex keeps the position it had.
 pub fn limit_positions(mesh: &Mesh) -> Vec<DVec3> {
-    let mut shared = Shared::default();
+    let mut shared = Shared::new(mesh);
     let ids = (0..mesh.vertex_bound() as u32).map(VertexId);
     ids.map(|v| if mesh.has_vertex(v) { position(mesh, v, &mut shared) } else { mesh.position(v) }).collect()
 }
 
 /// [`limit_point`] of every vertex id; a removed vertex keeps the position it had and has no tangents.
 pub fn limit_points(mesh: &Mesh) -> Vec<LimitPoint> {
-    let mut shared = Shared::default();
+    let mut shared = Shared::new(mesh);
     let ids = (0..mesh.vertex_bound() as u32).map(VertexId);
     ids.map(|v| if mesh.has_vertex(v) { point(mesh, v, &mut shared) } else { fixed(mesh, v) }).collect()
 }
 
 /// What the vertices of one mesh can share.
-#[derive(Default)]
 struct Shared {
+    /// Nothing but the boundary is sharp.
+    smooth: bool,
     large: LargeFaces,
     tangents: FxHashMap<RingShape, [RingMask; 2]>,
 }
 
+impl Shared {
+    fn new(mesh: &Mesh) -> Self {
+        Self { smooth: all_smooth(mesh), large: LargeFaces::default(), tangents: FxHashMap::default() }
+    }
+}
+
+/// The limit at a vertex where something is sharp, else `None`.
+fn sharp_point(mesh: &Mesh, v: VertexId, shared: &mut Shared) -> Option<LimitPoint> {
+    if shared.smooth {
+        return None;
+    }
+    let ring = Ring::new(mesh, v)?;
+    let masks = sharp_masks(mesh, &ring)?;
+    let centers = centers(mesh, &ring, &mut shared.large);
+    let tangents = match &masks.tangents {
+        Some([first, second]) => [apply(mesh, &ring, &centers, first), apply(mesh, &ring, &centers, second)],
+        None => [DVec3::ZERO; 2],
+    };
+    Some(LimitPoint { position: apply(mesh, &ring, &centers, &masks.position), tangents })
+}
+
 fn position(mesh: &Mesh, v: VertexId, shared: &mut Shared) -> DVec3 {
+    if let Some(point) = sharp_point(mesh, v, shared) {
+        return point.position;
+    }
     if let Some(ring) = RegularRing::new(mesh, v) {
         return ring.position();
     }
@@ -102,6 +128,9 @@ fn position(mesh: &Mesh, v: VertexId, shared: &mut Shared) -> DVec3 {
 }
 
 fn point(mesh: &Mesh, v: VertexId, shared: &mut Shared) -> LimitPoint {
+    if let Some(point) = sharp_point(mesh, v, shared) {
+        return point;
+    }
     if let Some(ring) = RegularRing::new(mesh, v) {
         return LimitPoint { position: ring.position(), tangents: ring.tangents() };
     }

@@ -10,7 +10,9 @@
 //! boundary; under the rules in use they give another plane on each level. The masks here are eigenvectors of the
 //! rules in use, and their plane is the one to which those of the levels converge.
 
+use super::mask_sharp::{CatmullClark, SharpMasks};
 use super::ring::{Ring, RingShape};
+use super::sharpness::Around;
 use crate::mesh::{Mesh, VertexId};
 use smallvec::{SmallVec, smallvec};
 use std::f64::consts::PI;
@@ -19,6 +21,7 @@ use std::f64::consts::PI;
 pub type LimitMask = SmallVec<[(VertexId, f64); 20]>;
 
 /// Weights by the roles that control points have in a ring.
+#[derive(Clone, Debug)]
 pub(super) struct RingMask {
     pub(super) vertex: f64,
     /// One per edge, for the vertex at its far end.
@@ -33,21 +36,37 @@ pub(super) struct RingMask {
 /// When there is no such vertex.
 pub fn limit_mask(mesh: &Mesh, v: VertexId) -> LimitMask {
     match Ring::new(mesh, v) {
-        Some(ring) => expand(mesh, &ring, &position_mask(ring.shape())),
+        Some(ring) => match sharp_masks(mesh, &ring) {
+            Some(masks) => expand(mesh, &ring, &masks.position),
+            None => expand(mesh, &ring, &position_mask(ring.shape())),
+        },
         None => smallvec![(v, 1.0)],
     }
 }
 
+/// The masks of a ring where something is sharp, else `None`.
+pub(super) fn sharp_masks(mesh: &Mesh, ring: &Ring) -> Option<SharpMasks> {
+    let around = Around::of(mesh, ring.center, &ring.edges)?;
+    Some(SharpMasks::new::<CatmullClark>(ring.shape(), around, mesh.subdivision().creasing))
+}
+
 /// The weights of two tangents of the limit surface at `v`, whose cross product points outwards; `None` at an isolated
-/// vertex. The sum of each is 0. At a regular vertex, and on a regular boundary, they are the derivatives by the
+/// vertex and at a sharp vertex without a sharp edge (the surface has a spike there). The sum of each is 0. At a regular vertex, and on a regular boundary, they are the derivatives by the
 /// parameters of the faces (along [`Mesh::vertex_half_edge`] and across it); elsewhere only their directions have a
 /// meaning. On the boundary the first runs against the direction of the boundary loop's half-edges, the surface
 /// on its left.
+///
+/// On an infinitely sharp crease they are those of one of its sides, the one with the face of
+/// [`Mesh::vertex_half_edge`] or, at a boundary, with the first face counter-clockwise; at a vertex that stays in its
+/// place they lead to two neighbouring vertices.
 ///
 /// # Panics
 /// When there is no such vertex.
 pub fn limit_tangent_masks(mesh: &Mesh, v: VertexId) -> Option<[LimitMask; 2]> {
     let ring = Ring::new(mesh, v)?;
+    if let Some(masks) = sharp_masks(mesh, &ring) {
+        return Some(masks.tangents?.map(|mask| expand(mesh, &ring, &mask)));
+    }
     Some(tangent_masks(ring.shape()).map(|mask| expand(mesh, &ring, &mask)))
 }
 
@@ -79,7 +98,7 @@ pub(super) fn tangent_masks(ring: RingShape) -> [RingMask; 2] {
 }
 
 impl RingMask {
-    fn zero(ring: RingShape, vertex: f64) -> Self {
+    pub(super) fn zero(ring: RingShape, vertex: f64) -> Self {
         Self { vertex, edges: smallvec![0.0; ring.edges()], faces: smallvec![0.0; ring.faces] }
     }
 
@@ -94,7 +113,7 @@ impl RingMask {
 }
 
 /// The subdominant eigenvalue of a sector of the ring with the angle `theta` between edges.
-fn eigenvalue(theta: f64) -> f64 {
+pub(super) fn eigenvalue(theta: f64) -> f64 {
     let cos = theta.cos();
     (5.0 + cos + (theta * 0.5).cos() * (18.0 + 2.0 * cos).sqrt()) / 16.0
 }
@@ -169,7 +188,7 @@ fn across_boundary(ring: RingShape) -> RingMask {
 }
 
 /// Spreads the weights of the faces over their vertices.
-fn expand(mesh: &Mesh, ring: &Ring, mask: &RingMask) -> LimitMask {
+pub(super) fn expand(mesh: &Mesh, ring: &Ring, mask: &RingMask) -> LimitMask {
     let mut row = LimitMask::new();
     row.push((ring.center, mask.vertex));
     row.extend(ring.edges.iter().zip(&mask.edges).map(|(&h, &weight)| (mesh.target(h), weight)));

@@ -2,11 +2,19 @@
 //!
 //! The boundary follows the cubic B-spline of its control points ("edge only" in OpenSubdiv's terms): a boundary
 //! vertex moves to (1, 6, 1)/8 of itself and its boundary neighbours, a boundary edge is halved, and a corner of a
-//! single face is rounded like any other boundary vertex. Sharpness of edges and vertices is not regarded: all are smooth.
+//! single face is rounded like any other boundary vertex, unless the mesh asks otherwise
+//! ([`Mesh::subdivision`](crate::mesh::Mesh::subdivision)). Creases, corners and darts are those of OpenSubdiv
+//! (DeRose, Kass, Truong 1998; Hoppe et al. 1994), semi-sharp or infinitely sharp.
 
+mod dart;
 mod evaluate;
+mod exceptions;
 mod limit;
+mod loop_limit;
+mod loop_refine;
 mod mask;
+mod mask_sharp;
+mod mask_step;
 mod normal;
 pub(crate) mod patch;
 pub(crate) mod patch_bicubic;
@@ -15,13 +23,16 @@ mod patch_ring;
 mod positions;
 mod refinement;
 mod ring;
+pub(crate) mod sharpness;
 #[cfg(test)]
 mod tests;
 mod topology;
 
 pub use evaluate::{SecondDerivatives, SurfacePoint, evaluate};
 pub use limit::{LimitPoint, limit_normal, limit_point, limit_points, limit_position, limit_positions};
+pub use loop_refine::{LoopSurface, NotTriangles};
 pub use mask::{LimitMask, limit_mask, limit_tangent_masks};
 pub use normal::{face_normal, vertex_normal};
 pub use refinement::{ControlIds, RefineError, Refined, Refinement, VertexParent, refine};
+pub use sharpness::has_limit;
 pub use topology::Level;

@@ -6,8 +6,9 @@
 
 use super::patch_bicubic::{Bicubic, Jet};
 use super::patch_corner::{Corner, Points};
-use super::patch_ring::{RefinedFace, Ring};
+use super::patch_ring::Ring;
 use crate::mesh::{FaceId, Mesh};
+use smallvec::SmallVec;
 
 /// The parameter at which the normal is taken where a vertex itself has none.
 const BESIDE: f64 = 1.0 / 4096.0;
@@ -21,31 +22,19 @@ const BESIDE: f64 = 1.0 / 4096.0;
 pub(crate) enum Patch {
     /// One bicubic piece.
     Regular(Bicubic),
-    /// Four quarters, each with its own origin at corner 0, 1, 2 or 3 of the patch.
-    Irregular(Box<[Quarter; 4]>),
-}
-
-/// A quarter of an irregular patch, with u and v running from the patch's corner: see [`from_quarter`].
-#[derive(Clone, Debug)]
-#[expect(
-    clippy::large_enum_variant,
-    reason = "most are regular; boxing them would cost each face an allocation"
-)]
-pub(crate) enum Quarter {
-    /// One bicubic piece.
-    Regular(Bicubic),
     /// A quad with an extraordinary vertex at its origin.
     Corner(Corner),
+    /// Four quarters, each with its own origin at corner 0, 1, 2 or 3 of the patch: see [`to_quarter`].
+    Split(Box<[Self; 4]>),
 }
 
-/// Patch parameters of the point (x, y) in [0, 1]^2 of quarter `quarter`.
-pub(crate) fn from_quarter(quarter: usize, x: f64, y: f64) -> (f64, f64) {
-    match quarter {
-        0 => (0.5 * x, 0.5 * y),
-        1 => (1.0 - 0.5 * y, 0.5 * x),
-        2 => (1.0 - 0.5 * x, 1.0 - 0.5 * y),
-        _ => (0.5 * y, 1.0 - 0.5 * x),
-    }
+/// What a quad is.
+#[expect(clippy::large_enum_variant, reason = "it lives for one call")]
+enum Class {
+    Regular(Bicubic),
+    Corner(Corner),
+    /// Its quarters are to be looked at.
+    Split,
 }
 
 /// The quarter in which (u, v) lies, and the parameters in it.
@@ -80,7 +69,7 @@ impl Jet {
     }
 }
 
-/// What [`Patch::evaluate`] found.
+/// What [`Patch::evaluate_at`] found.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Evaluated {
     pub(crate) jet: Jet,
@@ -88,6 +77,28 @@ pub(crate) struct Evaluated {
     pub(crate) normal: glam::DVec3,
     /// False at an extraordinary vertex, where the second derivatives are not defined.
     pub(crate) smooth: bool,
+}
+
+impl Evaluated {
+    pub(crate) fn regular(jet: Jet) -> Self {
+        Self { jet, normal: jet.du.cross(jet.dv).normalize_or_zero(), smooth: true }
+    }
+}
+
+/// Classification: the one place that decides what is bicubic and what needs local refinement. `child` says that the
+/// quad is a quarter of another one, so that its corners but the first are regular unless something is semi-sharp.
+fn classify(ring: &Ring, child: bool) -> Class {
+    if ring.is_semi_sharp() {
+        return Class::Split;
+    }
+    let sectors = ring.sectors();
+    if let Some(grid) = sectors.regular_grid() {
+        return Class::Regular(Bicubic::from_bspline(&grid));
+    }
+    match sectors.corner().filter(|_| child) {
+        Some(corner) => Class::Corner(corner),
+        None => Class::Split,
+    }
 }
 
 impl Patch {
@@ -98,53 +109,53 @@ impl Patch {
             return Vec::new();
         };
         if ring.arity() == 4 {
-            return Self::of_quad(&ring).into_iter().collect();
+            return vec![Self::of_quad(&ring, false)];
         }
         let refined = ring.refine();
-        let patches = (0..ring.arity()).map(|corner| Self::of_quad(&ring.child(&refined, corner)));
-        patches.collect::<Option<_>>().unwrap_or_default()
+        (0..ring.arity()).map(|corner| Self::of_quad(&ring.child(&refined, corner), false)).collect()
     }
 
-    /// The patch of one corner of a real face, without the face's other patches.
-    pub(crate) fn of_corner(mesh: &Mesh, face: FaceId, corner: usize) -> Option<Self> {
-        let ring = Ring::new(mesh, face)?;
-        match ring.arity() {
-            4 if corner == 0 => Self::of_quad(&ring),
-            4 => None,
-            arity if corner < arity => Self::of_quad(&ring.child(&ring.refine(), corner)),
-            _ => None,
-        }
-    }
-
-    /// Classification: the one place that decides what is bicubic and what needs local refinement.
-    fn of_quad(ring: &Ring) -> Option<Self> {
-        if let Some(grid) = ring.regular_grid() {
-            return Some(Self::Regular(Bicubic::from_bspline(&grid)));
-        }
-        let refined = ring.refine();
-        let quarter = |i| Quarter::new(ring, &refined, i);
-        Some(Self::Irregular(Box::new([quarter(0)?, quarter(1)?, quarter(2)?, quarter(3)?])))
-    }
-
-    /// Evaluates at (u, v) in [0, 1]^2.
-    pub(crate) fn evaluate(&self, u: f64, v: f64) -> Evaluated {
-        match self {
-            Self::Regular(bicubic) => {
-                let jet = bicubic.jet(u, v);
-                Evaluated { jet, normal: jet.du.cross(jet.dv).normalize_or_zero(), smooth: true }
-            }
-            Self::Irregular(quarters) => {
-                let (quarter, x, y) = to_quarter(u, v);
-                let found = match &quarters[quarter] {
-                    Quarter::Regular(bicubic) => {
-                        let jet = bicubic.jet(x, y);
-                        Evaluated { jet, normal: jet.du.cross(jet.dv).normalize_or_zero(), smooth: true }
-                    }
-                    Quarter::Corner(corner) => evaluate_corner(corner, x, y),
-                };
-                Evaluated { jet: found.jet.in_patch(quarter), ..found }
+    /// Recursion ends after 12 levels: sharpness is below 10 or infinite, and then quarters are no longer split.
+    fn of_quad(ring: &Ring, child: bool) -> Self {
+        match classify(ring, child) {
+            Class::Regular(bicubic) => Self::Regular(bicubic),
+            Class::Corner(corner) => Self::Corner(corner),
+            Class::Split => {
+                let refined = ring.refine();
+                Self::Split(Box::new([0, 1, 2, 3].map(|i| Self::of_quad(&ring.child(&refined, i), true))))
             }
         }
+    }
+
+    /// Evaluates the patch of one corner of a real face at (u, v) in [0, 1]^2, without making the rest of it. `None`
+    /// where there is no such patch.
+    pub(crate) fn evaluate_at(mesh: &Mesh, face: FaceId, corner: usize, u: f64, v: f64) -> Option<Evaluated> {
+        let mut ring = Ring::new(mesh, face)?;
+        let patches = if ring.arity() == 4 { 1 } else { ring.arity() };
+        if corner >= patches {
+            return None;
+        }
+        if patches > 1 {
+            ring = ring.child(&ring.refine(), corner);
+        }
+        let (mut x, mut y) = (u, v);
+        let mut quarters: SmallVec<[usize; 12]> = SmallVec::new();
+        let mut found = loop {
+            match classify(&ring, !quarters.is_empty()) {
+                Class::Regular(bicubic) => break Evaluated::regular(bicubic.jet(x, y)),
+                Class::Corner(corner) => break evaluate_corner(&corner, x, y),
+                Class::Split => {
+                    let quarter;
+                    (quarter, x, y) = to_quarter(x, y);
+                    ring = ring.child(&ring.refine(), quarter);
+                    quarters.push(quarter);
+                }
+            }
+        };
+        for &quarter in quarters.iter().rev() {
+            found.jet = found.jet.in_patch(quarter);
+        }
+        Some(found)
     }
 }
 
@@ -158,16 +169,4 @@ pub(crate) fn evaluate_corner(corner: &Corner, x: f64, y: f64) -> Evaluated {
         normal = beside.normalize_or_zero();
     }
     Evaluated { jet, normal, smooth }
-}
-
-impl Quarter {
-    fn new(ring: &Ring, refined: &RefinedFace, corner: usize) -> Option<Self> {
-        let corner = ring.child(refined, corner).corner()?;
-        Some(if corner.is_regular() {
-            let grid = corner.grid().map(|row| row.map(|p| p + corner.origin));
-            Self::Regular(Bicubic::from_bspline(&grid))
-        } else {
-            Self::Corner(corner)
-        })
-    }
 }

@@ -5,6 +5,8 @@
 //! their place). All points are kept relative to the limit position of the extraordinary vertex and moved back to
 //! it after each step: so lengths keep their relative precision at any depth, and with them the derivatives.
 
+use super::dart::DartMasks;
+use super::mask::RingMask;
 use super::patch_bicubic::{Bicubic, Grid, Jet};
 use glam::DVec3;
 use smallvec::SmallVec;
@@ -19,10 +21,36 @@ const MAX_DEPTH: u32 = 128;
 /// the boundary) one less.
 pub(crate) type Points = SmallVec<[DVec3; 8]>;
 
+/// What becomes of the vertex of a fan.
+#[derive(Clone, Debug)]
+pub(crate) enum Tip {
+    /// It moves by the smooth rule, or along the ends of an open fan.
+    Moving,
+    /// It stays: a corner.
+    Fixed,
+    /// It moves by the smooth rule, but a crease ends there. The fan is closed.
+    Dart(Box<Dart>),
+}
+
+/// A crease that ends at a vertex.
+#[derive(Clone, Debug)]
+pub(crate) struct Dart {
+    /// The spoke that is the crease.
+    spoke: usize,
+    masks: DartMasks,
+}
+
+impl Tip {
+    pub(crate) fn dart(faces: usize, spoke: usize) -> Self {
+        Self::Dart(Box::new(Dart { spoke, masks: DartMasks::new(faces) }))
+    }
+}
+
 /// See the [module](self). Spoke `home` runs along u, spoke `home + 1` along v.
 #[derive(Clone, Debug)]
 pub(crate) struct Corner {
     pub(crate) closed: bool,
+    pub(crate) tip: Tip,
     pub(crate) home: usize,
     /// Limit position of the extraordinary vertex; everything below is relative to it.
     pub(crate) origin: DVec3,
@@ -78,22 +106,30 @@ impl Corner {
         pick(&self.diagonals, self.home, offset, self.closed)
     }
 
-    /// True when the edge along u is on the boundary.
+    /// The crease's spoke at a dart.
+    fn dart_spoke(&self) -> Option<usize> {
+        match &self.tip {
+            Tip::Dart(dart) => Some(dart.spoke),
+            _ => None,
+        }
+    }
+
+    /// True when the edge along u bounds the surface: a boundary or a crease.
     fn boundary_u(&self) -> bool {
-        !self.closed && self.home == 0
+        !self.closed && self.home == 0 || self.dart_spoke() == Some(self.home)
     }
 
-    /// True when the edge along v is on the boundary.
+    /// True when the edge along v bounds the surface.
     fn boundary_v(&self) -> bool {
-        !self.closed && self.home + 1 == self.diagonals.len()
+        let next = self.home + 1;
+        if self.closed {
+            self.dart_spoke() == Some(if next == self.spokes.len() { 0 } else { next })
+        } else {
+            next == self.diagonals.len()
+        }
     }
 
-    /// True when the quad is an ordinary bicubic patch.
-    pub(crate) fn is_regular(&self) -> bool {
-        self.diagonals.len() == if self.closed { 4 } else { 2 }
-    }
-
-    /// The 4 x 4 grid round the quad. The point diagonally behind the vertex is meaningful in regular corners only.
+    /// The 4 x 4 grid round the quad. The point diagonally behind the vertex has no meaning.
     /// Beside the boundary the outer row continues the two inside it in a straight line, which gives exactly the
     /// edge-only boundary.
     pub(crate) fn grid(&self) -> Grid {
@@ -125,18 +161,23 @@ impl Corner {
             std::array::from_fn(|i| refine_curve(std::array::from_fn(|j| rows[j][i])));
         let mut fine: [[DVec3; 5]; 5] = std::array::from_fn(|j| std::array::from_fn(|i| columns[i][j]));
 
-        if self.closed {
+        if matches!(self.tip, Tip::Fixed) {
+            // It stays.
+        } else if self.closed {
             let n = count as f64;
             let sum: DVec3 = self.spokes.iter().zip(scratch.iter()).map(|(&s, &f)| s + f).sum();
             self.vertex = old * ((n - 2.0) / n) + sum / (n * n);
         } else {
             self.vertex = (self.spokes[0] + 6.0 * old + self.spokes[count - 1]) * 0.125;
         }
+        let crease = self.dart_spoke();
         for j in 0..count {
             let before = if j > 0 { Some(j - 1) } else { self.closed.then(|| faces - 1) };
             let spoke = &mut self.spokes[j];
             *spoke = match (before, j < faces) {
-                (Some(before), true) => (old + *spoke + scratch[before] + scratch[j]) * 0.25,
+                (Some(before), true) if crease != Some(j) => {
+                    (old + *spoke + scratch[before] + scratch[j]) * 0.25
+                }
                 _ => (old + *spoke) * 0.5,
             };
         }
@@ -165,6 +206,11 @@ impl Corner {
 
     /// Limit position of the vertex (Halstead et al. 1993; the boundary is a cubic B-spline curve).
     fn limit_position(&self) -> DVec3 {
+        match &self.tip {
+            Tip::Moving => {}
+            Tip::Fixed => return self.vertex,
+            Tip::Dart(dart) => return self.apply(&dart.masks.position, dart.spoke),
+        }
         let spokes: DVec3 = self.spokes.iter().sum();
         if self.closed {
             let n = self.spokes.len() as f64;
@@ -176,10 +222,40 @@ impl Corner {
         }
     }
 
+    /// A mask of a dart whose crease is spoke `crease`.
+    fn apply(&self, mask: &RingMask, crease: usize) -> DVec3 {
+        let count = self.spokes.len();
+        let at = |i: usize| (crease + i) % count;
+        let spokes = mask.edges.iter().enumerate().map(|(i, &w)| w * self.spokes[at(i)]);
+        let diagonals = mask.faces.iter().enumerate().map(|(i, &w)| w * self.diagonals[at(i)]);
+        mask.vertex * self.vertex + spokes.sum::<DVec3>() + diagonals.sum::<DVec3>()
+    }
+
     /// Limit position and tangents of the vertex. The tangents have the directions of the two edges; their lengths
-    /// are the derivatives where the vertex is regular and a convention elsewhere.
+    /// are the derivatives where the vertex is regular and a convention elsewhere. At a corner of several quads they
+    /// are the edges of the present level and the normal, which depends on the way to the corner, is left out.
     pub(crate) fn vertex_limit(&self) -> VertexLimit {
         let position = self.limit_position();
+        let count = self.spokes.len();
+        match &self.tip {
+            Tip::Moving => {}
+            Tip::Fixed => {
+                let next = if self.home + 1 == count { 0 } else { self.home + 1 };
+                let [du, dv] = [self.home, next].map(|j| self.spokes[j] - self.vertex);
+                return VertexLimit { position, du, dv, normal: DVec3::ZERO };
+            }
+            Tip::Dart(dart) => {
+                let [along, across] =
+                    [&dart.masks.along, &dart.masks.across].map(|mask| self.apply(mask, dart.spoke));
+                let direction = |offset: usize| {
+                    let place = (self.home + offset + count - dart.spoke) % count;
+                    let (sin, cos) = (2.0 * PI * place as f64 / count as f64).sin_cos();
+                    along * cos + across * sin
+                };
+                let (du, dv) = (direction(0), direction(1));
+                return VertexLimit { position, du, dv, normal: along.cross(across) };
+            }
+        }
         if self.closed {
             let (du, dv) = self.interior_tangents();
             return VertexLimit { position, du, dv, normal: du.cross(dv) };

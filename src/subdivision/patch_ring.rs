@@ -2,12 +2,16 @@
 //!
 //! A ring is the face and, round each of its corners, the fan of faces there. One refinement step gives the rings of
 //! the child faces. The masks of Catmull-Clark stand here once, in [`Fan::vertex_point`] and [`Fan::edge_point`].
+//! Where nothing is semi-sharp any longer, infinitely sharp edges bound the surface of a face like the boundary: then
+//! fans are cut down to the sector between them that holds the face.
 
 use super::patch_bicubic::Grid;
-use super::patch_corner::{Corner, Points};
-use crate::mesh::{FaceId, HalfEdgeId, Mesh};
+use super::patch_corner::{Corner, Points, Tip};
+use super::sharpness::{Around, Values, is_semi_sharp};
+use crate::mesh::{Creasing, FaceId, HalfEdgeId, Mesh};
 use glam::DVec3;
 use smallvec::{SmallVec, smallvec};
+use std::borrow::Cow;
 
 /// A face of a fan, seen from the fan's vertex.
 #[derive(Clone, Copy, Debug)]
@@ -16,6 +20,7 @@ struct FanFace {
     point: DVec3,
     /// For quads the opposite vertex.
     diagonal: DVec3,
+    quad: bool,
 }
 
 /// The faces and edges round one corner of the ring's face, counter-clockwise. Face `j` lies between spokes `j` and
@@ -27,8 +32,10 @@ struct Fan {
     faces: SmallVec<[FanFace; 6]>,
     home: usize,
     closed: bool,
-    /// All faces are quads.
-    quads: bool,
+    /// What is sharp; `None` where nothing is but the boundary.
+    around: Option<Box<Around>>,
+    /// What becomes of the vertex where nothing is semi-sharp.
+    tip: Tip,
 }
 
 /// See the [module](self).
@@ -37,6 +44,7 @@ pub(crate) struct Ring {
     fans: SmallVec<[Fan; 4]>,
     /// Face point of the ring's own face.
     centre: DVec3,
+    creasing: Creasing,
 }
 
 /// The points that refinement makes of the vertices and edges of the ring's own face.
@@ -75,24 +83,27 @@ impl Fan {
             faces: SmallVec::new(),
             home,
             closed,
-            quads: true,
+            around: None,
+            tip: Tip::Moving,
         };
         let mut spoke = first;
+        let mut edges: SmallVec<[HalfEdgeId; 8]> = SmallVec::new();
         loop {
+            edges.push(spoke);
             fan.spokes.push(mesh.position(mesh.target(spoke)));
             let face = mesh.face(spoke);
             if face.is_boundary() {
                 break;
             }
             let (point, arity) = face_point(mesh, face);
-            fan.quads &= arity == 4;
             let diagonal = mesh.position(mesh.target(mesh.next(spoke)));
-            fan.faces.push(FanFace { point, diagonal });
+            fan.faces.push(FanFace { point, diagonal, quad: arity == 4 });
             spoke = mesh.vertex_ccw(spoke);
             if spoke == first {
                 break;
             }
         }
+        fan.around = Around::of(mesh, mesh.source(corner), &edges).map(Box::new);
         fan
     }
 
@@ -101,10 +112,10 @@ impl Fan {
         let count = spokes.len();
         let faces = diagonals.iter().enumerate().map(|(j, &diagonal)| {
             let next = if j + 1 == count { 0 } else { j + 1 };
-            FanFace { point: (vertex + spokes[j] + diagonal + spokes[next]) * 0.25, diagonal }
+            FanFace { point: (vertex + spokes[j] + diagonal + spokes[next]) * 0.25, diagonal, quad: true }
         });
         let faces = faces.collect();
-        Self { vertex, spokes, faces, home, closed, quads: true }
+        Self { vertex, spokes, faces, home, closed, around: None, tip: Tip::Moving }
     }
 
     fn at(&self, offset: isize, count: usize) -> Option<usize> {
@@ -130,41 +141,139 @@ impl Fan {
         self.face(offset).map(|face| face.diagonal)
     }
 
-    /// True for the fans of which regular patches consist.
+    /// True for the sectors of which regular patches consist.
     fn is_regular(&self) -> bool {
-        self.quads && self.faces.len() == if self.closed { 4 } else { 2 }
+        let faces = self.faces.len();
+        let usual = match self.tip {
+            Tip::Moving => faces == if self.closed { 4 } else { 2 },
+            Tip::Fixed => !self.closed && faces == 1,
+            Tip::Dart(_) => false,
+        };
+        usual && self.faces.iter().all(|face| face.quad)
     }
 
-    fn vertex_point(&self) -> DVec3 {
-        if self.closed {
+    fn vertex_point(&self, creasing: Creasing) -> DVec3 {
+        let smooth = || {
             let n = self.spokes.len() as f64;
             let sum: DVec3 = self.spokes.iter().zip(&self.faces).map(|(&s, f)| s + f.point).sum();
             self.vertex * ((n - 2.0) / n) + sum / (n * n)
-        } else {
-            (self.spokes[0] + 6.0 * self.vertex + self.spokes[self.spokes.len() - 1]) * 0.125
+        };
+        let crease = |a: usize, b: usize| (self.spokes[a] + 6.0 * self.vertex + self.spokes[b]) * 0.125;
+        match &self.around {
+            Some(around) => {
+                let blend = around.blend(creasing);
+                let mut point = blend.corner * self.vertex;
+                if blend.crease > 0.0 {
+                    let [a, b] = blend.crease_edges;
+                    point += blend.crease * crease(a, b);
+                }
+                if self.closed && blend.smooth() > 0.0 {
+                    point += blend.smooth() * smooth();
+                }
+                point
+            }
+            None if self.closed => smooth(),
+            None => crease(0, self.spokes.len() - 1),
         }
     }
 
     /// Edge point of spoke `j`.
-    fn edge_point(&self, j: usize) -> DVec3 {
+    fn edge_point(&self, creasing: Creasing, j: usize) -> DVec3 {
+        let middle = (self.vertex + self.spokes[j]) * 0.5;
         let before = if j > 0 { Some(j - 1) } else { self.closed.then(|| self.faces.len() - 1) };
-        let faces = before.and_then(|b| self.faces.get(b)).zip(self.faces.get(j));
-        match faces {
-            Some((a, b)) => (self.vertex + self.spokes[j] + a.point + b.point) * 0.25,
-            None => (self.vertex + self.spokes[j]) * 0.5,
+        let Some((a, b)) = before.and_then(|b| self.faces.get(b)).zip(self.faces.get(j)) else {
+            return middle;
+        };
+        let smooth = (self.vertex + self.spokes[j] + a.point + b.point) * 0.25;
+        match &self.around {
+            Some(around) => {
+                let share = around.crease_share(creasing, j);
+                share * middle + (1.0 - share) * smooth
+            }
+            None => smooth,
         }
     }
 
     /// Edge point of spoke `home + offset`, which the caller knows to exist.
-    fn edge_point_at(&self, offset: isize) -> DVec3 {
-        self.spoke_at(offset).map_or(self.vertex, |j| self.edge_point(j))
+    fn edge_point_at(&self, creasing: Creasing, offset: isize) -> DVec3 {
+        self.spoke_at(offset).map_or(self.vertex, |j| self.edge_point(creasing, j))
+    }
+
+    /// Sharpness of the half at this vertex of spoke `home + offset`, and of the semi-sharp ones of the others.
+    fn half_at(&self, creasing: Creasing, offset: isize) -> (f32, Values) {
+        let (Some(around), Some(j)) = (&self.around, self.spoke_at(offset)) else {
+            return (0.0, Values::new());
+        };
+        let halves = around.halves(creasing);
+        let others = halves.iter().enumerate().filter(|&(i, &s)| i != j && is_semi_sharp(s)).map(|(_, &s)| s);
+        (halves[j], others.collect())
     }
 
     /// The fan of the same vertex after one step.
-    fn refined(&self) -> Self {
-        let spokes = (0..self.spokes.len()).map(|j| self.edge_point(j)).collect();
+    fn refined(&self, creasing: Creasing) -> Self {
+        let spokes = (0..self.spokes.len()).map(|j| self.edge_point(creasing, j)).collect();
         let diagonals: Points = self.faces.iter().map(|face| face.point).collect();
-        Self::of_quads(self.vertex_point(), spokes, &diagonals, self.home, self.closed)
+        let mut fan = Self::of_quads(self.vertex_point(creasing), spokes, &diagonals, self.home, self.closed);
+        fan.around = self.around.as_ref().map(|around| Box::new(around.refined(creasing)));
+        fan
+    }
+
+    /// Makes this fan, that of an edge point, know the two halves of its edge at spokes `places`: the sharpness of
+    /// each, and of the semi-sharp edges at its far end.
+    fn set_edge(&mut self, creasing: Creasing, places: [usize; 2], halves: [(f32, Values); 2]) {
+        // Open fans are sharp at the boundary only.
+        if !self.closed || halves.iter().all(|half| half.0 <= 0.0) {
+            return;
+        }
+        let mut spokes: Values = smallvec![0.0; self.spokes.len()];
+        let mut far: SmallVec<[Values; 2]> = SmallVec::new();
+        if creasing == Creasing::Chaikin && halves.iter().any(|half| is_semi_sharp(half.0)) {
+            far.resize(spokes.len(), Values::new());
+        }
+        for (place, (sharpness, others)) in places.into_iter().zip(halves) {
+            spokes[place] = sharpness;
+            if let Some(far) = far.get_mut(place) {
+                *far = others;
+            }
+        }
+        self.around = Some(Box::new(Around { vertex: 0.0, spokes, far }));
+    }
+
+    fn is_semi_sharp(&self) -> bool {
+        self.around.as_ref().is_some_and(|around| around.is_semi_sharp())
+    }
+
+    /// The part of the fan, in which nothing is semi-sharp, between the infinitely sharp edges on both sides of the
+    /// home face.
+    fn sector(&self) -> Self {
+        let Some(around) = &self.around else { return self.clone() };
+        let mut sector = self.clone();
+        sector.around = None;
+        let sharp = around.infinite_spokes();
+        let fixed = around.is_fixed();
+        if fixed {
+            sector.tip = Tip::Fixed;
+        }
+        match sharp[..] {
+            [] => return sector,
+            [crease] if !fixed => {
+                sector.tip = Tip::dart(self.faces.len(), crease);
+                return sector;
+            }
+            _ => {}
+        }
+        let count = self.spokes.len();
+        let first = sharp.iter().rev().find(|&&j| j <= self.home).or(sharp.last());
+        let last = sharp.iter().find(|&&j| j > self.home).or(sharp.first());
+        let (Some(&first), Some(&last)) = (first, last) else { return sector };
+        let between = (last + count - first) % count;
+        let faces = if between == 0 { count } else { between };
+        let at = |i: usize| (first + i) % count;
+        sector.home = (self.home + count - first) % count;
+        sector.spokes = (0..=faces).map(|i| self.spokes[at(i)]).collect();
+        sector.faces = (0..faces).map(|i| self.faces[at(i)]).collect();
+        sector.closed = false;
+        sector
     }
 }
 
@@ -175,7 +284,11 @@ impl Ring {
             return None;
         }
         let fans: SmallVec<[Fan; 4]> = mesh.face_half_edges(face).map(|h| Fan::new(mesh, h)).collect();
-        (fans.len() >= 3).then(|| Self { fans, centre: face_point(mesh, face).0 })
+        (fans.len() >= 3).then(|| Self {
+            fans,
+            centre: face_point(mesh, face).0,
+            creasing: mesh.subdivision().creasing,
+        })
     }
 
     /// Number of corners.
@@ -183,8 +296,22 @@ impl Ring {
         self.fans.len()
     }
 
+    /// True while sharpness falls from level to level somewhere round the face.
+    pub(crate) fn is_semi_sharp(&self) -> bool {
+        self.fans.iter().any(Fan::is_semi_sharp)
+    }
+
+    /// The ring cut down to what the surface of the face depends on. Nothing may be semi-sharp.
+    pub(crate) fn sectors(&self) -> Cow<'_, Self> {
+        if self.fans.iter().all(|fan| fan.around.is_none()) {
+            return Cow::Borrowed(self);
+        }
+        let fans = self.fans.iter().map(Fan::sector).collect();
+        Cow::Owned(Self { fans, centre: self.centre, creasing: self.creasing })
+    }
+
     /// The control grid of a face whose limit is a single bicubic patch: a quad with only regular corners and
-    /// quads around. `None` when the face needs local refinement.
+    /// quads around. `None` when the face needs local refinement. The ring must be one of sectors.
     pub(crate) fn regular_grid(&self) -> Option<Grid> {
         if self.arity() != 4 || !self.fans.iter().all(Fan::is_regular) {
             return None;
@@ -238,8 +365,8 @@ impl Ring {
     /// Refines the vertices and edges of the face.
     pub(crate) fn refine(&self) -> RefinedFace {
         RefinedFace {
-            vertices: self.fans.iter().map(Fan::vertex_point).collect(),
-            edges: self.fans.iter().map(|fan| fan.edge_point_at(0)).collect(),
+            vertices: self.fans.iter().map(|fan| fan.vertex_point(self.creasing)).collect(),
+            edges: self.fans.iter().map(|fan| fan.edge_point_at(self.creasing, 0)).collect(),
         }
     }
 
@@ -254,11 +381,17 @@ impl Ring {
         let edge = |i: usize| refined.edges[i];
         let (fan, fan_next, fan_prev) = (&self.fans[corner], &self.fans[next], &self.fans[prev]);
 
-        let at_next_edge = match fan.face(-1) {
+        let creasing = self.creasing;
+        let mut at_next_edge = match fan.face(-1) {
             Some(mate) => Fan::of_quads(
                 edge(corner),
                 smallvec![self.centre, vertex(corner), mate.point, vertex(next)],
-                &[edge(prev), fan.edge_point_at(-1), fan_next.edge_point_at(2), edge(after)],
+                &[
+                    edge(prev),
+                    fan.edge_point_at(creasing, -1),
+                    fan_next.edge_point_at(creasing, 2),
+                    edge(after),
+                ],
                 0,
                 true,
             ),
@@ -270,11 +403,16 @@ impl Ring {
                 false,
             ),
         };
-        let at_prev_edge = match fan.face(1) {
+        let mut at_prev_edge = match fan.face(1) {
             Some(mate) => Fan::of_quads(
                 edge(prev),
                 smallvec![vertex(corner), self.centre, vertex(prev), mate.point],
-                &[edge(corner), edge(before), fan_prev.edge_point_at(-1), fan.edge_point_at(2)],
+                &[
+                    edge(corner),
+                    edge(before),
+                    fan_prev.edge_point_at(creasing, -1),
+                    fan.edge_point_at(creasing, 2),
+                ],
                 0,
                 true,
             ),
@@ -286,16 +424,23 @@ impl Ring {
                 false,
             ),
         };
+        if fan.around.is_some() || fan_next.around.is_some() || fan_prev.around.is_some() {
+            let next_halves = [fan.half_at(creasing, 0), fan_next.half_at(creasing, 1)];
+            at_next_edge.set_edge(creasing, [1, 3], next_halves);
+            let prev_halves = [fan.half_at(creasing, 1), fan_prev.half_at(creasing, 0)];
+            at_prev_edge.set_edge(creasing, [0, 2], prev_halves);
+        }
         let spokes = (0..k).map(|j| edge(wrap(prev + j))).collect();
         let diagonals: Points = (0..k).map(|j| vertex(wrap(corner + j))).collect();
         let at_centre = Fan::of_quads(self.centre, spokes, &diagonals, 0, true);
-        let fans: SmallVec<[Fan; 4]> = smallvec![fan.refined(), at_next_edge, at_centre, at_prev_edge];
+        let fans: SmallVec<[Fan; 4]> =
+            smallvec![fan.refined(creasing), at_next_edge, at_centre, at_prev_edge];
         let centre = fans[0].face(0).map_or(fans[0].vertex, |face| face.point);
-        Self { fans, centre }
+        Self { fans, centre, creasing }
     }
 
-    /// A child quad as a [`Corner`] at its corner 0. The other corners must be regular, which holds for the
-    /// children of a quad. `None` when the face is no quad.
+    /// A child quad, a ring of sectors, as a [`Corner`] at its corner 0. The other corners must be regular, which holds
+    /// for the children of a quad. `None` when the face is no quad.
     pub(crate) fn corner(&self) -> Option<Corner> {
         let [fan, right, far, left] = &self.fans[..] else {
             return None;
@@ -303,6 +448,7 @@ impl Ring {
         let here = |p: Option<DVec3>| p.unwrap_or(fan.vertex);
         let mut corner = Corner {
             closed: fan.closed,
+            tip: fan.tip.clone(),
             home: fan.home,
             origin: DVec3::ZERO,
             vertex: fan.vertex,

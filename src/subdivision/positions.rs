@@ -14,6 +14,7 @@ impl Refinement {
     /// When `level` is the last one, or `positions` has not one entry per vertex of `level`.
     pub fn refine_positions(&self, level: usize, positions: &[DVec3], next: &mut Vec<DVec3>) {
         assert!(level < self.depth(), "level {level} is the last one");
+        let exceptions = self.exceptions(level);
         let level = self.level(level);
         assert_eq!(positions.len(), level.vertex_count(), "one position per vertex");
         let [vertex_count, ..] = level.child_counts();
@@ -45,6 +46,7 @@ impl Refinement {
             edge_points[(edge.half_edge >> 1) as usize] = (a + b) * 0.5;
             vertex_points[edge.source as usize] = a * 0.75 + (before + b) * 0.125;
         }
+        exceptions.apply(positions, vertex_points, edge_points);
     }
 
     /// The positions of level `level`, refined from those of the control mesh.
@@ -68,6 +70,7 @@ impl Refinement {
     /// # Panics
     /// When there is no such level, or `positions` has not one entry per vertex of `level`.
     pub fn limit_positions(&self, level: usize, positions: &[DVec3]) -> Option<Vec<DVec3>> {
+        let sharpness = self.sharpness(level);
         let level = self.level(level);
         assert_eq!(positions.len(), level.vertex_count(), "one position per vertex");
         let mut limit = vec![DVec3::ZERO; positions.len()];
@@ -85,6 +88,9 @@ impl Refinement {
         for edge in &level.boundary {
             let neighbours = positions[edge.previous_source as usize] + positions[edge.target as usize];
             limit[edge.source as usize] = (4.0 * positions[edge.source as usize] + neighbours) / 6.0;
+        }
+        for (vertex, point) in sharpness.limits(level, self.creasing(), positions) {
+            limit[vertex as usize] = point;
         }
         Some(limit)
     }

@@ -1,7 +1,9 @@
 //! Uniform refinement: connectivity once, positions as often as they change.
 
+use super::exceptions::{Exceptions, LevelSharpness};
+use super::sharpness::has_limit;
 use super::topology::{BoundaryEdge, Level};
-use crate::mesh::{FaceId, HalfEdgeId, Mesh, Polygons, VertexId};
+use crate::mesh::{BoundaryRule, Creasing, FaceId, HalfEdgeId, Mesh, Polygons, SubdivisionOptions, VertexId};
 use glam::DVec3;
 
 /// Refinement cannot be done.
@@ -24,7 +26,7 @@ pub enum RefineError {
 }
 
 /// At this level the children of a single triangle outnumber 31-bit ids.
-const DEEPEST: usize = 16;
+pub(super) const DEEPEST: usize = 16;
 
 /// Elements of the mesh in the order in which level 0 numbers them: ascending ids, removed elements left out. On a
 /// compact mesh element `i` is therefore the one with id `i`.
@@ -56,6 +58,13 @@ pub struct Refinement {
     /// Valences of the vertices of level 1 (of which those of level 0 are the first); later ones have valence 4
     /// wherever a valence is asked for, which is not on the boundary.
     valences: Vec<u32>,
+    /// Per level but the last, the points of the next level that are not smooth.
+    exceptions: Vec<Exceptions>,
+    /// What is sharp on each level.
+    sharpness: Vec<LevelSharpness>,
+    subdivision: SubdivisionOptions,
+    /// Faces of level 0 without a limit surface, ascending.
+    left_out: Vec<u32>,
     ids: ControlIds,
 }
 
@@ -79,11 +88,20 @@ impl Refinement {
         valences.extend(control.face_sizes());
         check_size(&control, depth)?;
         let mut levels = vec![control];
+        let subdivision = mesh.subdivision();
+        let left_out = ids.faces.iter().zip(0..).filter(|&(&f, _)| !has_limit(mesh, f)).map(|(_, face)| face);
+        let left_out: Vec<u32> = left_out.collect();
+        let mut sharpness = vec![LevelSharpness::of(mesh, &ids)];
+        let mut exceptions = Vec::with_capacity(depth);
         for level in 1..=depth {
-            let child = levels[level - 1].child(level == depth);
+            let parent = &levels[level - 1];
+            let (found, next) = sharpness[level - 1].refined(parent, subdivision.creasing);
+            exceptions.push(found);
+            sharpness.push(next);
+            let child = parent.child(level == depth);
             levels.push(child);
         }
-        Ok(Self { levels, valences, ids })
+        Ok(Self { levels, valences, exceptions, sharpness, subdivision, left_out, ids })
     }
 
     /// Number of the last level.
@@ -132,18 +150,50 @@ impl Refinement {
         ((face as usize) < parent.corner_vertices.len()).then(|| parent.corner_place(face))
     }
 
-    /// Level `level` with the given positions as polygons.
+    /// Level `level` with the given positions as polygons, which have the sharpness that is left, so that they are
+    /// another control mesh of the same surface. Faces without a limit surface are holes.
     ///
     /// # Panics
     /// When there is no such level.
     pub fn polygons(&self, level: usize, positions: Vec<DVec3>) -> Polygons {
-        let level = self.level(level);
+        let sharpness = self.sharpness(level);
+        let mut subdivision = self.subdivision;
+        if subdivision.boundary == BoundaryRule::None {
+            // The faces that it leaves out are holes already.
+            subdivision.boundary = BoundaryRule::EdgeOnly;
+        }
+        let (number, level) = (level, self.level(level));
         Polygons {
             positions,
             face_sizes: level.face_sizes().collect(),
             face_vertices: level.face_vertices().to_vec(),
+            creases: sharpness.creases().collect(),
+            corners: sharpness.corners().collect(),
+            holes: self.holes(number),
+            subdivision,
             ..Polygons::default()
         }
+    }
+
+    /// Faces of `level` that are no part of the surface, ascending.
+    fn holes(&self, level: usize) -> Vec<u32> {
+        let mut holes = self.left_out.clone();
+        for parent in &self.levels[..level] {
+            holes = holes.iter().flat_map(|&face| parent.corners(face as usize)).map(|c| c as u32).collect();
+        }
+        holes
+    }
+
+    pub(super) fn exceptions(&self, level: usize) -> &Exceptions {
+        &self.exceptions[level]
+    }
+
+    pub(super) fn sharpness(&self, level: usize) -> &LevelSharpness {
+        &self.sharpness[level]
+    }
+
+    pub(super) fn creasing(&self) -> Creasing {
+        self.subdivision.creasing
     }
 
     pub(super) fn valences(&self) -> &[u32] {

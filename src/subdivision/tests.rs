@@ -208,3 +208,16 @@ fn a_face_with_many_vertices_takes_linear_time() {
     assert_eq!(points[9].position, limit_position(&mesh, VertexId(9)));
     assert_eq!(refine(&mesh, 1).unwrap().level().face_count(), COUNT as usize);
 }
+
+/// A sharp vertex without faces has no ring.
+#[test]
+fn isolated_sharp_vertices_stay() {
+    let mut polygons = Polygons::new(vec![DVec3::ONE, DVec3::ZERO, DVec3::X, DVec3::Y], &[&[1, 2, 3]]);
+    polygons.corners.push((0, 3.5));
+    let mesh = Mesh::from_polygons(&polygons).unwrap();
+    assert_eq!(limit_position(&mesh, VertexId(0)), DVec3::ONE);
+    let refined = refine(&mesh, 2).unwrap();
+    assert_eq!(refined.positions[0], DVec3::ONE);
+    let limits = refined.refinement.limit_positions(2, &refined.positions).unwrap();
+    assert_eq!(limits[0], DVec3::ONE);
+}

@@ -3,39 +3,51 @@
 use super::tree::Tree;
 use super::{Bicubic, Corner, LimitSurface, Patch};
 use crate::mesh::{FaceId, Mesh};
-use crate::subdivision::patch::{Quarter, evaluate_corner, from_quarter};
+use crate::subdivision::has_limit;
+use crate::subdivision::patch::evaluate_corner;
 use crate::subdivision::patch_corner::{Points, VertexLimit};
+use crate::subdivision::sharpness::is_infinite;
 use glam::DVec3;
 
 /// Levels of pieces that are stored beside an extraordinary vertex; deeper ones are made on demand.
 pub(super) const LEVELS: u32 = 4;
 
-/// Where a piece lies: a square of a patch or of one of its quarters.
+/// Where a piece lies: a square of a patch, turned by quarter turns.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Domain {
     pub(super) patch: u32,
-    /// 0 to 3; `WHOLE` when the square is one of the patch itself.
-    pub(super) quarter: u8,
-    pub(super) x: f64,
-    pub(super) y: f64,
-    pub(super) size: f64,
+    /// Patch parameters of the square's own origin.
+    u: f64,
+    v: f64,
+    /// Quarter turns from the patch's axes to the square's, counter-clockwise.
+    turns: u8,
+    size: f64,
 }
-
-const WHOLE: u8 = 4;
 
 impl Domain {
     /// Patch parameters of the point (s, t) in [0, 1]^2 of the piece.
     pub(super) fn parameters(&self, s: f64, t: f64) -> (f64, f64) {
-        let (x, y) = (self.x + s * self.size, self.y + t * self.size);
-        if self.quarter == WHOLE { (x, y) } else { from_quarter(usize::from(self.quarter), x, y) }
+        let (s, t) = (s * self.size, t * self.size);
+        match self.turns {
+            0 => (self.u + s, self.v + t),
+            1 => (self.u - t, self.v + s),
+            2 => (self.u - s, self.v - t),
+            _ => (self.u + t, self.v - s),
+        }
+    }
+
+    /// The quarter at corner `corner` of the square, whose origin that corner is.
+    fn quarter(&self, corner: u8) -> Self {
+        let (s, t) = [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)][usize::from(corner)];
+        let (u, v) = self.parameters(s, t);
+        Self { u, v, turns: (self.turns + corner) % 4, size: 0.5 * self.size, ..*self }
     }
 
     /// Domain of side `side` of the extraordinary quad over this square, after one refinement.
     pub(super) fn side(&self, side: usize) -> Self {
-        let size = 0.5 * self.size;
-        let x = if side < 2 { self.x + size } else { self.x };
-        let y = if side > 0 { self.y + size } else { self.y };
-        Self { x, y, size, ..*self }
+        let (s, t) = [(0.5, 0.0), (0.5, 0.5), (0.0, 0.5)][side];
+        let (u, v) = self.parameters(s, t);
+        Self { u, v, size: 0.5 * self.size, ..*self }
     }
 
     /// Domain of what remains of the extraordinary quad after one refinement.
@@ -61,26 +73,22 @@ pub(super) struct CornerEntry {
     pub(super) normal: DVec3,
 }
 
-#[derive(Clone, Debug)]
-pub(super) enum PatchEntry {
-    /// Index of the piece.
-    Regular(u32),
-    Irregular([QuarterEntry; 4]),
-}
-
+/// A patch or a part of one.
 #[derive(Clone, Copy, Debug)]
-pub(super) enum QuarterEntry {
+pub(super) enum Entry {
     /// Index of the piece.
     Regular(u32),
     /// The pieces of level l are `first_piece + 3 l + side`.
     Corner { first_piece: u32, corner: u32 },
+    /// Index of the first of the four quarters among the parts.
+    Split(u32),
 }
 
 #[derive(Clone, Copy, Debug)]
 pub(super) struct PatchPlace {
     pub(super) face: FaceId,
     pub(super) corner: u32,
-    /// Sides beyond which nothing is frozen: bit 0 at v = 0, bit 1 at u = 1, bit 2 at v = 1, bit 3 at u = 0.
+    /// Sides beyond which nothing is frozen, and infinitely sharp ones: bit 0 at v = 0, bit 1 at u = 1, bit 2 at v = 1, bit 3 at u = 0.
     pub(super) rims: u8,
 }
 
@@ -90,6 +98,7 @@ pub(super) fn freeze(mesh: &Mesh, faces: Vec<FaceId>) -> LimitSurface {
         faces: Vec::with_capacity(faces.len()),
         places: Vec::with_capacity(faces.len()),
         patches: Vec::with_capacity(faces.len()),
+        parts: Vec::new(),
         pieces: Vec::with_capacity(faces.len()),
         corners: Vec::new(),
         tree: Tree::default(),
@@ -97,7 +106,7 @@ pub(super) fn freeze(mesh: &Mesh, faces: Vec<FaceId>) -> LimitSurface {
         tolerance: 0.0,
     };
     let mut scratch = Points::new();
-    for &face in &faces {
+    for &face in faces.iter().filter(|&&face| has_limit(mesh, face)) {
         let patches = Patch::of_face(mesh, face);
         if patches.is_empty() {
             continue;
@@ -115,7 +124,7 @@ pub(super) fn freeze(mesh: &Mesh, faces: Vec<FaceId>) -> LimitSurface {
     frozen
 }
 
-/// Marks the sides of the last face's patches beyond which nothing is frozen.
+/// Marks the sides of the last face's patches beyond which nothing is frozen, and those along infinite creases.
 fn mark_rims(frozen: &mut LimitSurface, mesh: &Mesh, faces: &[FaceId], face: FaceId, count: usize) {
     let first = frozen.places.len() - count;
     for place in &mut frozen.places[first..] {
@@ -123,7 +132,9 @@ fn mark_rims(frozen: &mut LimitSurface, mesh: &Mesh, faces: &[FaceId], face: Fac
     }
     for (i, h) in mesh.face_half_edges(face).enumerate() {
         let beyond = mesh.face(h.mate());
-        if !beyond.is_boundary() && faces.binary_search(&beyond).is_ok() {
+        let goes_on =
+            !beyond.is_boundary() && faces.binary_search(&beyond).is_ok() && has_limit(mesh, beyond);
+        if goes_on && !is_infinite(mesh.edge_sharpness(h)) {
             continue;
         }
         if count == 1 {
@@ -137,23 +148,27 @@ fn mark_rims(frozen: &mut LimitSurface, mesh: &Mesh, faces: &[FaceId], face: Fac
 
 impl LimitSurface {
     fn add_patch(&mut self, patch: Patch, scratch: &mut Points) {
-        let index = self.patches.len() as u32;
-        let whole = Domain { patch: index, quarter: WHOLE, x: 0.0, y: 0.0, size: 1.0 };
-        let entry = match patch {
-            Patch::Regular(bicubic) => PatchEntry::Regular(self.add_piece(bicubic, whole)),
-            Patch::Irregular(quarters) => {
-                let mut place = 0;
-                PatchEntry::Irregular(quarters.map(|quarter| {
-                    let domain = Domain { quarter: place, ..whole };
-                    place += 1;
-                    match quarter {
-                        Quarter::Regular(bicubic) => QuarterEntry::Regular(self.add_piece(bicubic, domain)),
-                        Quarter::Corner(corner) => self.add_corner(corner, domain, scratch),
-                    }
-                }))
-            }
-        };
+        let patch_index = self.patches.len() as u32;
+        let whole = Domain { patch: patch_index, u: 0.0, v: 0.0, turns: 0, size: 1.0 };
+        let entry = self.add_part(patch, whole, scratch);
         self.patches.push(entry);
+    }
+
+    /// Recursion is as deep as patches are split, 12 levels at most.
+    fn add_part(&mut self, patch: Patch, domain: Domain, scratch: &mut Points) -> Entry {
+        match patch {
+            Patch::Regular(bicubic) => Entry::Regular(self.add_piece(bicubic, domain)),
+            Patch::Corner(corner) => self.add_corner(corner, domain, scratch),
+            Patch::Split(quarters) => {
+                let mut place = 0;
+                let entries = quarters.map(|quarter| {
+                    place += 1;
+                    self.add_part(quarter, domain.quarter(place - 1), scratch)
+                });
+                self.parts.extend(entries);
+                Entry::Split(self.parts.len() as u32 - 4)
+            }
+        }
     }
 
     fn add_piece(&mut self, bicubic: Bicubic, domain: Domain) -> u32 {
@@ -161,7 +176,7 @@ impl LimitSurface {
         self.pieces.len() as u32 - 1
     }
 
-    fn add_corner(&mut self, mut corner: Corner, mut domain: Domain, scratch: &mut Points) -> QuarterEntry {
+    fn add_corner(&mut self, mut corner: Corner, mut domain: Domain, scratch: &mut Points) -> Entry {
         let first_piece = self.pieces.len() as u32;
         let limit = corner.vertex_limit();
         let normal = evaluate_corner(&corner, 0.0, 0.0).normal;
@@ -174,7 +189,7 @@ impl LimitSurface {
             domain = domain.inner();
         }
         self.corners.push(CornerEntry { corner, domain, limit, normal });
-        QuarterEntry::Corner { first_piece, corner: self.corners.len() as u32 - 1 }
+        Entry::Corner { first_piece, corner: self.corners.len() as u32 - 1 }
     }
 
     /// Builds the tree over everything that was added.

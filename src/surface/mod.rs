@@ -21,11 +21,12 @@ pub use line::Hit;
 
 use crate::mesh::{FaceId, Mesh};
 use crate::subdivision::SurfacePoint;
-use crate::subdivision::patch::{Patch, evaluate_corner, to_quarter};
+use crate::subdivision::patch::{Evaluated, Patch, evaluate_corner, to_quarter};
 use crate::subdivision::patch_bicubic::{Bicubic, Jet};
 use crate::subdivision::patch_corner::Corner;
-use freeze::{CornerEntry, LEVELS, PatchEntry, PatchPlace, Piece, QuarterEntry};
+use freeze::{CornerEntry, Entry, LEVELS, PatchPlace, Piece};
 use glam::DVec3;
+use smallvec::SmallVec;
 use tree::Tree;
 
 /// The limit surface of a mesh or of some of its faces, frozen. See the [module](self).
@@ -34,7 +35,9 @@ pub struct LimitSurface {
     /// Frozen faces, ascending, each with its first patch.
     faces: Vec<(FaceId, u32)>,
     places: Vec<PatchPlace>,
-    patches: Vec<PatchEntry>,
+    patches: Vec<Entry>,
+    /// Quarters of patches and of each other, four by four.
+    parts: Vec<Entry>,
     pieces: Vec<Piece>,
     corners: Vec<CornerEntry>,
     tree: Tree,
@@ -45,13 +48,15 @@ pub struct LimitSurface {
 }
 
 impl LimitSurface {
-    /// Freezes the whole surface (Catmull-Clark, boundary rule edge-only).
+    /// Freezes the whole surface (Catmull-Clark) with the sharpness and the options of the mesh. Faces that have no
+    /// limit surface are left out.
     pub fn new(mesh: &Mesh) -> Self {
         let faces: Vec<FaceId> = mesh.faces().collect();
         freeze::freeze(mesh, faces)
     }
 
-    /// Freezes the surface of `faces` only; boundary loops and faces that do not exist are passed over. Time and
+    /// Freezes the surface of `faces` only; boundary loops and faces that do not exist or have no limit surface are
+    /// passed over. Time and
     /// memory follow the number of these faces and their neighbours, not the mesh.
     pub fn around(mesh: &Mesh, faces: &[FaceId]) -> Self {
         let mut faces: Vec<FaceId> =
@@ -92,46 +97,48 @@ impl LimitSurface {
     }
 
     fn evaluate_patch(&self, patch: usize, u: f64, v: f64) -> SurfacePoint {
-        let smooth = |jet: Jet| SurfacePoint {
-            position: jet.position,
-            du: jet.du,
-            dv: jet.dv,
-            second: Some(crate::subdivision::SecondDerivatives { uu: jet.duu, uv: jet.duv, vv: jet.dvv }),
-            normal: jet.du.cross(jet.dv).normalize_or_zero(),
-        };
-        let piece = |index: u32| &self.pieces[index as usize].bicubic;
-        let quarters = match &self.patches[patch] {
-            PatchEntry::Regular(index) => return smooth(piece(*index).jet(u, v)),
-            PatchEntry::Irregular(quarters) => quarters,
-        };
-        let (quarter, mut x, mut y) = to_quarter(u, v);
-        match quarters[quarter] {
-            QuarterEntry::Regular(index) => smooth(piece(index).jet(x, y).in_patch(quarter)),
-            QuarterEntry::Corner { first_piece, corner } => {
-                let mut scale = 1.0;
-                for level in 0..LEVELS {
-                    (x, y, scale) = (2.0 * x, 2.0 * y, 2.0 * scale);
-                    let (side, a, b) = match (x >= 1.0, y >= 1.0) {
-                        (false, false) => continue,
-                        (true, false) => (0, x - 1.0, y),
-                        (true, true) => (1, x - 1.0, y - 1.0),
-                        (false, true) => (2, x, y - 1.0),
-                    };
-                    let jet = piece(first_piece + 3 * level + side).jet(a, b).scaled(scale);
-                    return smooth(jet.in_patch(quarter));
-                }
-                let entry = &self.corners[corner as usize];
-                let mut found = evaluate_corner(&entry.corner, x, y);
-                if found.smooth {
-                    found.jet = found.jet.scaled(scale);
-                } else {
-                    found.jet = Jet { du: entry.limit.du, dv: entry.limit.dv, ..found.jet };
-                    found.normal = entry.normal;
-                }
-                found.jet = found.jet.in_patch(quarter);
-                found.into()
-            }
+        let (mut entry, mut x, mut y) = (self.patches[patch], u, v);
+        let mut quarters: SmallVec<[usize; 12]> = SmallVec::new();
+        while let Entry::Split(first) = entry {
+            let quarter;
+            (quarter, x, y) = to_quarter(x, y);
+            quarters.push(quarter);
+            entry = self.parts[first as usize + quarter];
         }
+        let mut found = match entry {
+            Entry::Corner { first_piece, corner } => self.evaluate_corner(first_piece, corner, x, y),
+            Entry::Regular(piece) | Entry::Split(piece) => {
+                Evaluated::regular(self.pieces[piece as usize].bicubic.jet(x, y))
+            }
+        };
+        for &quarter in quarters.iter().rev() {
+            found.jet = found.jet.in_patch(quarter);
+        }
+        found.into()
+    }
+
+    fn evaluate_corner(&self, first_piece: u32, corner: u32, mut x: f64, mut y: f64) -> Evaluated {
+        let mut scale = 1.0;
+        for level in 0..LEVELS {
+            (x, y, scale) = (2.0 * x, 2.0 * y, 2.0 * scale);
+            let (side, a, b) = match (x >= 1.0, y >= 1.0) {
+                (false, false) => continue,
+                (true, false) => (0, x - 1.0, y),
+                (true, true) => (1, x - 1.0, y - 1.0),
+                (false, true) => (2, x, y - 1.0),
+            };
+            let piece = &self.pieces[(first_piece + 3 * level + side) as usize];
+            return Evaluated::regular(piece.bicubic.jet(a, b).scaled(scale));
+        }
+        let entry = &self.corners[corner as usize];
+        let mut found = evaluate_corner(&entry.corner, x, y);
+        if found.smooth {
+            found.jet = found.jet.scaled(scale);
+        } else {
+            found.jet = Jet { du: entry.limit.du, dv: entry.limit.dv, ..found.jet };
+            found.normal = entry.normal;
+        }
+        found
     }
 
     /// The distance of `point` to the surface, positive on the side of its normals. The closest point whose normal

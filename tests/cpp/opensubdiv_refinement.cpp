@@ -77,4 +77,4 @@ void compare(std::string const& name, Polygons const& polygons, Mesh const& mesh
 
 }  // namespace
 
-int main() { return for_each_cage(compare); }
+int main() { return for_each_cage(compare, true); }

@@ -46,6 +46,8 @@ pub(super) struct Reader<'a> {
     /// The largest vertex number (0-based) that a face or a tag named, and where a tag named its largest.
     pub(super) largest_vertex: Option<u32>,
     largest_tag_vertex: Option<(u32, Place)>,
+    /// The largest face number (0-based) that a tag named, and where.
+    largest_tag_face: Option<(u32, Place)>,
 }
 
 impl<'a> Reader<'a> {
@@ -62,6 +64,7 @@ impl<'a> Reader<'a> {
             understood: false,
             largest_vertex: None,
             largest_tag_vertex: None,
+            largest_tag_face: None,
         };
         let expected = bytes.len() / BYTES_PER_ELEMENT;
         reader.polygons.positions.reserve(expected);
@@ -80,6 +83,12 @@ impl<'a> Reader<'a> {
     pub(super) fn note_tag_vertex(&mut self, vertex: u32, place: Place) {
         if self.largest_tag_vertex.is_none_or(|(largest, _)| vertex > largest) {
             self.largest_tag_vertex = Some((vertex, place));
+        }
+    }
+
+    pub(super) fn note_tag_face(&mut self, face: u32, place: Place) {
+        if self.largest_tag_face.is_none_or(|(largest, _)| face > largest) {
+            self.largest_tag_face = Some((face, place));
         }
     }
 
@@ -266,6 +275,11 @@ impl<'a> Reader<'a> {
             let message =
                 format!("a tag names vertex {vertex}, but the file has {count} (tags count from 0)");
             return Err(fault_at(place, message, RANGE_REMEDY));
+        }
+        let faces = self.polygons.face_sizes.len();
+        if let Some((face, place)) = self.largest_tag_face.filter(|&(face, _)| face as usize >= faces) {
+            let message = format!("a tag names face {face}, but the file has {faces} (tags count from 0)");
+            return Err(fault_at(place, message, "correct the number or add the missing face"));
         }
         for (statement, line) in self.sets.unused() {
             self.report.ignore(IgnoredKind::NamesWithoutFaces, line, || statement.keyword().into());

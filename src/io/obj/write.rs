@@ -1,7 +1,7 @@
 //! Writes OBJ files.
 
 use super::super::number::shortest;
-use crate::mesh::{FaceSet, Polygons};
+use crate::mesh::{BoundaryRule, Creasing, FaceSet, Polygons};
 use std::io::{self, Write};
 
 /// Stands for "no texture coordinate" in `face_texcoords`.
@@ -9,7 +9,7 @@ const NO_TEXCOORD: u32 = u32::MAX;
 
 /// Writes `polygons`: vertices in their order, also those without a face, and every number as the shortest text that
 /// reads back as the same number. A face whose corners do not all have texture coordinates is written without.
-/// Creases and corners become `t` tags as in OpenSubdiv's shapes, with vertices counted from 0.
+/// Creases, corners, holes and options of the scheme become `t` tags as in OpenSubdiv's shapes, counted from 0.
 ///
 /// # Errors
 /// What `out` reports.
@@ -29,6 +29,18 @@ pub fn write(polygons: &Polygons, out: &mut impl Write) -> io::Result<()> {
     }
     for &(vertex, sharpness) in &polygons.corners {
         writeln!(out, "t corner 1/1/0 {vertex} {sharpness}")?;
+    }
+    for face in &polygons.holes {
+        writeln!(out, "t hole 1/0/0 {face}")?;
+    }
+    // What is not the default of readers.
+    match polygons.subdivision.boundary {
+        BoundaryRule::None => writeln!(out, "t interpolateboundary 1/0/0 0")?,
+        BoundaryRule::EdgeAndCorner => writeln!(out, "t interpolateboundary 1/0/0 1")?,
+        BoundaryRule::EdgeOnly => {}
+    }
+    if polygons.subdivision.creasing == Creasing::Chaikin {
+        writeln!(out, "t creasemethod 0/0/1 chaikin")?;
     }
     Ok(())
 }

@@ -12,6 +12,8 @@ pub(super) fn rewrite(
     let old_texcoords = std::mem::take(&mut source.polygons.face_texcoords);
     let old_sizes = std::mem::take(&mut source.polygons.face_sizes);
     let old_sets = std::mem::take(&mut source.polygons.face_sets);
+    let mut old_holes = std::mem::take(&mut source.polygons.holes);
+    old_holes.sort_unstable();
     let old_numbers = std::mem::take(&mut source.file_faces);
     let polygons = &mut source.polygons;
     let (mut start, mut removed) = (0, false);
@@ -30,6 +32,9 @@ pub(super) fn rewrite(
         polygons.face_vertices.extend(corners.iter().map(|corner| corner.0));
         polygons.face_texcoords.extend(corners.iter().filter_map(|corner| corner.1));
         polygons.face_sizes.push(corners.len() as u32);
+        if old_holes.binary_search(&(face as u32)).is_ok() {
+            polygons.holes.push(polygons.face_sizes.len() as u32 - 1);
+        }
         polygons.face_sets.extend(old_sets.get(face));
         source.file_faces.push(old_numbers.get(face).copied().unwrap_or(face as u32));
     }

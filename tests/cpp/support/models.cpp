@@ -27,7 +27,7 @@ std::string data_folder() {
     return "";
 }
 
-int for_each_cage(std::function<void(std::string const&, Polygons const&, Mesh const&)> const& test) {
+int for_each_cage(CageTest const& test, bool with_tags) {
     std::string const data = data_folder();
     if (data.empty()) return skipped;
     std::vector<std::string> names;
@@ -39,7 +39,7 @@ int for_each_cage(std::function<void(std::string const&, Polygons const&, Mesh c
         }
     }
     std::sort(names.begin(), names.end());
-    int tested = 0;
+    int tested = 0, tested_with_tags = 0;
     for (std::string const& name : names) {
         Polygons const polygons = read_obj(data + "/" + name);
         try {
@@ -47,6 +47,10 @@ int for_each_cage(std::function<void(std::string const&, Polygons const&, Mesh c
             check::that(non_manifold.count(name) == 0, name + " is accepted, though it is no manifold");
             test(name, polygons, mesh);
             ++tested;
+            Polygons const tagged = read_obj(data + "/" + name, with_tags);
+            if (tagged.tags == polygons.tags) continue;
+            test(name + " with tags", tagged, make_mesh(tagged));
+            ++tested_with_tags;
         } catch (Refused const& refused) {
             std::printf("%s left out: %s\n", name.c_str(), refused.what());
             check::that(non_manifold.count(name) == 1, name + " is refused: " + refused.what());
@@ -54,5 +58,9 @@ int for_each_cage(std::function<void(std::string const&, Polygons const&, Mesh c
     }
     std::printf("%d of %zu models tested\n", tested, names.size());
     check::that(tested > 100, "too few models");
+    if (with_tags) {
+        std::printf("%d models tested with tags\n", tested_with_tags);
+        check::that(tested_with_tags > 25, "too few models with tags");
+    }
     return check::result();
 }

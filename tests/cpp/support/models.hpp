@@ -15,6 +15,7 @@ constexpr int skipped = 77;
 std::string data_folder();
 
 // Calls `test` for every control cage in osd (tags ignored), upholstery, product, organic and classic that is a
-// manifold. The others are printed with the reason; a file that is refused without being known as a non-manifold,
+// manifold; with `with_tags` once more for those in osd whose file has tags, with them. The others are printed with the reason; a file that is refused without being known as a non-manifold,
 // or accepted in spite of it, is a failure. Returns the exit code.
-int for_each_cage(std::function<void(std::string const& name, Polygons const&, Mesh const&)> const& test);
+using CageTest = std::function<void(std::string const& name, Polygons const&, Mesh const&)>;
+int for_each_cage(CageTest const& test, bool with_tags = false);

@@ -22,7 +22,66 @@ Mesh make_mesh(Polygons const& polygons) {
                              polygons.vertices.size(), &polygons.positions.data()->x, polygons.positions.size(), 0,
                              &mesh, &error),
             error);
-    return Mesh(mesh);
+    Mesh owner(mesh);
+    Tags const& tags = polygons.tags;
+    constexpr std::uint32_t boundaries[] = {WELT_BOUNDARY_NONE, WELT_BOUNDARY_EDGE_AND_CORNER, WELT_BOUNDARY_EDGE_ONLY};
+    require(welt_mesh_set_subdivision(mesh, boundaries[tags.boundary],
+                                      tags.chaikin ? WELT_CREASING_CHAIKIN : WELT_CREASING_UNIFORM, &error),
+            error);
+    require(welt_mesh_set_edge_sharpness(mesh, tags.crease_vertices.data(), tags.crease_sharpness.data(),
+                                         tags.crease_sharpness.size(), &error),
+            error);
+    require(welt_mesh_set_vertex_sharpness(mesh, tags.corner_vertices.data(), tags.corner_sharpness.data(),
+                                           tags.corner_sharpness.size(), &error),
+            error);
+    require(welt_mesh_set_holes(mesh, tags.holes.data(), tags.holes.size(), &error), error);
+    return owner;
+}
+
+Mesh refine_loop(Mesh const& mesh) {
+    welt_mesh* refined = nullptr;
+    welt_error* error = nullptr;
+    require(welt_mesh_refine_loop(mesh.get(), 1, &refined, &error), error);
+    return Mesh(refined);
+}
+
+std::vector<Vector> positions_of(Mesh const& mesh) {
+    double const* positions = nullptr;
+    welt_error* error = nullptr;
+    require(welt_mesh_positions(mesh.get(), &positions, &error), error);
+    std::vector<Vector> points(welt_mesh_vertex_count(mesh.get()));
+    for (Vector& p : points) p = {positions[0], positions[1], positions[2]}, positions += 3;
+    return points;
+}
+
+std::vector<std::uint32_t> edges_of(Mesh const& mesh) {
+    std::vector<std::uint32_t> vertices(2 * welt_mesh_edge_count(mesh.get()));
+    welt_error* error = nullptr;
+    require(welt_mesh_edges(mesh.get(), vertices.data(), vertices.size(), &error), error);
+    return vertices;
+}
+
+LoopLimit loop_limit(Mesh const& mesh) {
+    std::size_t const count = welt_mesh_vertex_count(mesh.get());
+    LoopLimit limit{std::vector<Vector>(count), std::vector<Vector>(count)};
+    welt_error* error = nullptr;
+    require(welt_mesh_loop_limit(mesh.get(), &limit.positions.data()->x, &limit.normals.data()->x, 3 * count, &error),
+            error);
+    return limit;
+}
+
+std::vector<Jet> evaluate(Mesh const& mesh, std::vector<std::uint32_t> const& faces,
+                          std::vector<std::uint32_t> const& corners, std::vector<double> const& parameters) {
+    static_assert(sizeof(Jet) == 18 * sizeof(double), "points are written as 18 doubles");
+    std::vector<Jet> jets(faces.size());
+    welt_error* error = nullptr;
+    welt_surface* made = nullptr;
+    require(welt_surface_create(mesh.get(), faces.data(), faces.size(), &made, &error), error);
+    Surface const surface(made);
+    require(welt_surface_evaluate(made, faces.data(), corners.data(), parameters.data(), faces.size(),
+                               &jets.data()->position.x, 18 * jets.size(), &error),
+            error);
+    return jets;
 }
 
 std::vector<Level> refine(Mesh const& mesh, unsigned depth) {

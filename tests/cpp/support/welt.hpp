@@ -10,8 +10,10 @@
 
 struct Free {
     void operator()(welt_mesh* mesh) const { welt_mesh_free(mesh); }
+    void operator()(welt_surface* surface) const { welt_surface_free(surface); }
     void operator()(welt_refinement* refinement) const { welt_refinement_free(refinement); }
 };
+using Surface = std::unique_ptr<welt_surface, Free>;
 using Mesh = std::unique_ptr<welt_mesh, Free>;
 using Refinement = std::unique_ptr<welt_refinement, Free>;
 
@@ -28,8 +30,25 @@ struct Level {
     std::vector<std::uint32_t> parent_faces, parent_corners;
 };
 
+// A point of the limit surface and its derivatives.
+struct Jet {
+    Vector position, du, dv, duu, duv, dvv;
+};
+
 // Throws Refused for WELT_ERROR_MESH, std::runtime_error for every other failure, as do the functions below.
 Mesh make_mesh(Polygons const& polygons);
 std::vector<Level> refine(Mesh const& mesh, unsigned depth);
+// One level of Loop subdivision.
+Mesh refine_loop(Mesh const& mesh);
+// Positions of the vertices, and the two vertices of each edge.
+std::vector<Vector> positions_of(Mesh const& mesh);
+std::vector<std::uint32_t> edges_of(Mesh const& mesh);
+struct LoopLimit {
+    std::vector<Vector> positions, normals;
+};
+LoopLimit loop_limit(Mesh const& mesh);
+// Parameters are two per point.
+std::vector<Jet> evaluate(Mesh const& mesh, std::vector<std::uint32_t> const& faces,
+                          std::vector<std::uint32_t> const& corners, std::vector<double> const& parameters);
 std::vector<Vector> limit_positions(Mesh const& mesh);
 std::vector<Vector> limit_normals(Mesh const& mesh);
