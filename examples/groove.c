@@ -22,6 +22,8 @@ static void explain(const welt_error *error) {
             fprintf(stderr, "  %s %lu: ",
                     welt_error_place_kind(error, i) == WELT_PLACE_FACE ? "face" : "vertex",
                     (unsigned long)welt_error_place_id(error, i, 0));
+        } else {
+            fprintf(stderr, "  ");
         }
         fprintf(stderr, "%s\n", welt_error_place_message(error, i));
     }

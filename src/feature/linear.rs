@@ -519,6 +519,7 @@ impl<'a> Run<'a> {
             fitted,
             displaced,
             size: reference.map(|reference| reference.size()),
+            without_texcoords: without_texcoords(mesh, &pass.changed),
             warnings,
             green: pass.greens.iter().map(|green| green.vertex.0).collect(),
             feature_edges: feature_edges(
@@ -604,6 +605,15 @@ impl<'a> Run<'a> {
             })
             .collect()
     }
+}
+
+/// How many of the changed faces have a corner without a texture coordinate, on a mesh that has some.
+fn without_texcoords(mesh: &Mesh, changed: &[FaceId]) -> usize {
+    if !mesh.has_texcoords() {
+        return 0;
+    }
+    let bare = |f: &&FaceId| mesh.face_half_edges(**f).any(|h| mesh.texcoord(h).is_none());
+    changed.iter().filter(bare).count()
 }
 
 /// Faces whose limit surface can have changed: the surface of a face depends on the vertices of the faces around it,

@@ -133,6 +133,8 @@ pub struct Report {
     pub displaced: Option<Difference>,
     /// Diagonal of the bounding box that relative figures refer to, when deviations were asked for.
     pub size: Option<f64>,
+    /// Changed faces that lost their texture coordinates: a new corner has none, and a face keeps all or nothing.
+    pub without_texcoords: usize,
     /// What to look at.
     pub warnings: Vec<Warning>,
     /// Vertices that were displaced, in the numbering of the result.
@@ -227,6 +229,9 @@ impl fmt::Display for Report {
                     d.total.max, d.total.rms, d.outside.max, d.outside.rms
                 )?;
             }
+        }
+        if self.without_texcoords > 0 {
+            writeln!(f, "note: {} changed faces lost their texture coordinates", self.without_texcoords)?;
         }
         for end in &self.ends {
             writeln!(f, "note: {end}")?;

@@ -177,9 +177,13 @@ impl From<RulesError> for Failure {
         let places: Vec<Place> = error.diagnostics.iter().map(Place::from).collect();
         let message = match places.as_slice() {
             [only] => only.message.clone(),
+            [first, _] => format!("{}; and 1 more mistake", first.message),
             [first, ..] => format!("{}; and {} more mistakes", first.message, places.len() - 1),
             [] => String::new(),
         };
+        if error.unreadable {
+            return Self::new(WELT_ERROR_FILE, message);
+        }
         Self { code: WELT_ERROR_SYNTAX, message, places }
     }
 }

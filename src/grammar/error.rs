@@ -10,11 +10,16 @@ use std::fmt;
 pub struct RulesError {
     /// All mistakes that were found; at least one.
     pub diagnostics: Vec<Diagnostic>,
+    /// The file itself could not be read: the one diagnostic says why, and its place means nothing.
+    pub unreadable: bool,
 }
 
 impl fmt::Display for RulesError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         for (i, diagnostic) in self.diagnostics.iter().enumerate() {
+            if self.unreadable {
+                return f.write_str(&diagnostic.message);
+            }
             let gap = if i == 0 { "" } else { "\n\n" };
             write!(f, "{gap}{diagnostic}")?;
         }

@@ -34,7 +34,7 @@ pub(super) fn parse(name: &str, text: &str, loader: &Loader<'_>) -> Result<RuleS
         reader.rules.phases = phases(&reader.rules.rules);
         Ok(reader.rules)
     } else {
-        Err(RulesError { diagnostics: reader.errors })
+        Err(RulesError { diagnostics: reader.errors, unreadable: false })
     }
 }
 

@@ -101,7 +101,10 @@ impl RuleSet {
         let text = std::fs::read_to_string(path).map_err(|error| {
             let source = Source::new(&name, "");
             let message = format!("cannot read the rule file {name}: {error}");
-            RulesError { diagnostics: vec![Diagnostic::new(&source, Span::default(), message)] }
+            RulesError {
+                diagnostics: vec![Diagnostic::new(&source, Span::default(), message)],
+                unreadable: true,
+            }
         })?;
         Self::parse(&name, &text, &|file| std::fs::read_to_string(PathBuf::from(file)).ok())
     }

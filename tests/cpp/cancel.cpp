@@ -1,0 +1,126 @@
+// A feature that another thread cancels at some moment is applied whole or not at all, and several threads may read one mesh.
+
+#include "check.hpp"
+#include "welt.hpp"
+
+#include <atomic>
+#include <chrono>
+#include <cmath>
+#include <cstdint>
+#include <thread>
+
+namespace {
+
+constexpr std::uint32_t side = 40;
+
+Polygons sheet() {
+    Polygons polygons;
+    for (std::uint32_t y = 0; y <= side; ++y)
+        for (std::uint32_t x = 0; x <= side; ++x)
+            polygons.positions.push_back({double(x), double(y), std::sin(0.2 * x) * std::cos(0.3 * y)});
+    for (std::uint32_t y = 0; y < side; ++y)
+        for (std::uint32_t x = 0; x < side; ++x) {
+            std::uint32_t const a = x + (side + 1) * y;
+            polygons.sizes.push_back(4);
+            for (std::uint32_t v : {a, a + 1, a + side + 2, a + side + 1}) polygons.vertices.push_back(v);
+        }
+    return polygons;
+}
+
+struct Content {
+    std::vector<double> positions;
+    std::vector<std::uint32_t> sizes, vertices;
+    bool operator==(Content const& other) const {
+        return positions == other.positions && sizes == other.sizes && vertices == other.vertices;
+    }
+};
+
+Content content(welt_mesh const* mesh) {
+    Content all;
+    double const* view = nullptr;
+    check::that(welt_mesh_positions(mesh, &view, nullptr) == WELT_OK, "positions");
+    all.positions.assign(view, view + 3 * welt_mesh_vertex_count(mesh));
+    all.sizes.resize(welt_mesh_face_count(mesh));
+    all.vertices.resize(welt_mesh_face_vertex_count(mesh));
+    check::that(welt_mesh_faces(mesh, all.sizes.data(), all.sizes.size(), all.vertices.data(), all.vertices.size(),
+                                nullptr) == WELT_OK,
+                "faces");
+    return all;
+}
+
+std::int32_t groove(welt_mesh* mesh, welt_selection const* selection, welt_job const* job) {
+    welt_feature_options options;
+    check::that(welt_feature_options_init(&options, sizeof options) == WELT_OK, "options");
+    options.deviation = 1;
+    return welt_feature_apply(mesh, selection, "groove", SIZE_MAX, "width=0.3 depth=0.1", SIZE_MAX, &options, job,
+                              nullptr, nullptr);
+}
+
+void cancelled_at_any_moment() {
+    Polygons const polygons = sheet();
+    Mesh const untouched = make_mesh(polygons);
+    Content const before = content(untouched.get());
+    welt_selection* selection = nullptr;
+    check::that(welt_selection_create(untouched.get(), "ring:20,21", SIZE_MAX, &selection, nullptr) == WELT_OK, "ring");
+    Mesh const finished = make_mesh(polygons);
+    auto const start = std::chrono::steady_clock::now();
+    // A selection also fits a mesh with the same edges.
+    check::that(groove(finished.get(), selection, nullptr) == WELT_OK, "the feature");
+    auto const duration = std::chrono::steady_clock::now() - start;
+    Content const after = content(finished.get());
+
+    int cancelled = 0;
+    constexpr int moments = 12;
+    for (int i = 0; i < moments; ++i) {
+        Mesh const mesh = make_mesh(polygons);
+        welt_job* job = nullptr;
+        check::that(welt_job_create(&job, nullptr) == WELT_OK, "job");
+        std::thread other([&] {
+            std::this_thread::sleep_for(duration * i / moments);
+            double const progress = welt_job_progress(job);
+            check::that(progress >= 0.0 && progress <= 1.0, "progress");
+            welt_job_cancel(job);
+        });
+        std::int32_t const status = groove(mesh.get(), selection, job);
+        other.join();
+        welt_job_free(job);
+        cancelled += status == WELT_ERROR_CANCELLED;
+        if (status == WELT_ERROR_CANCELLED)
+            check::that(content(mesh.get()) == before, "a cancelled feature leaves the mesh as it was");
+        else
+            check::that(status == WELT_OK && content(mesh.get()) == after, "else it is applied whole");
+        if (status == WELT_ERROR_CANCELLED && i % 5 == 0) {
+            check::that(groove(mesh.get(), selection, nullptr) == WELT_OK, "the mesh can still be used");
+            check::that(content(mesh.get()) == after, "and the feature comes out the same");
+        }
+    }
+    std::printf("%d of %d were cancelled\n", cancelled, moments);
+    check::that(cancelled > 0, "a job that is cancelled at once is cancelled");
+    welt_selection_free(selection);
+}
+
+void many_readers() {
+    Mesh const mesh = make_mesh(sheet());
+    std::atomic<int> wrong{0};
+    std::vector<std::thread> readers;
+    for (int i = 0; i < 4; ++i)
+        readers.emplace_back([&] {
+            welt_selection* selection = nullptr;
+            welt_surface* surface = nullptr;
+            bool fine = welt_selection_create(mesh.get(), "ring:20,21", SIZE_MAX, &selection, nullptr) == WELT_OK;
+            fine = welt_surface_create(mesh.get(), nullptr, 0, &surface, nullptr) == WELT_OK && fine;
+            wrong += !fine || welt_selection_count(selection) != side + 1;
+            welt_surface_free(surface);
+            welt_selection_free(selection);
+        });
+    for (std::thread& reader : readers) reader.join();
+    check::that(wrong == 0, "four threads read one mesh");
+}
+
+}  // namespace
+
+int main() {
+    cancelled_at_any_moment();
+    many_readers();
+    return check::result();
+}

@@ -1,0 +1,285 @@
+//! The program as a user meets it: the messages of first mistakes, exit codes, and files that stay whole.
+
+use std::fs;
+use std::io::Write;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output, Stdio};
+
+/// A sheet of 3 x 2 unit squares, vertices 0 to 11 row by row, whose last square is cut into two triangles.
+const SHEET: &str = "v 0 0 0\nv 1 0 0\nv 2 0 0\nv 3 0 0\nv 0 1 0\nv 1 1 0\nv 2 1 0\nv 3 1 0\nv 0 2 0\nv 1 2 0\nv 2 2 0\nv 3 2 0\n\
+f 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 5 6 10 9\nf 6 7 11 10\nf 7 8 12\nf 7 12 11\n";
+
+/// A folder of one test, empty at first.
+struct Folder(PathBuf);
+
+impl Folder {
+    fn new(test: &str) -> Self {
+        let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join("program").join(test);
+        let _ = fs::remove_dir_all(&path);
+        fs::create_dir_all(&path).unwrap();
+        fs::write(path.join("sheet.obj"), SHEET).unwrap();
+        Self(path)
+    }
+
+    fn welt(&self, arguments: &[&str]) -> Run {
+        self.welt_fed(arguments, "")
+    }
+
+    fn welt_fed(&self, arguments: &[&str], input: &str) -> Run {
+        let mut child = Command::new(env!("CARGO_BIN_EXE_welt"))
+            .args(arguments)
+            .current_dir(&self.0)
+            .stdin(Stdio::piped())
+            .stdout(Stdio::piped())
+            .stderr(Stdio::piped())
+            .spawn()
+            .unwrap();
+        // A program that does not read its input closes it.
+        let _ = child.stdin.take().unwrap().write_all(input.as_bytes());
+        Run::from(child.wait_with_output().unwrap())
+    }
+
+    /// A groove with more arguments; the result would be `out.obj`.
+    fn groove(&self, more: &[&str]) -> Run {
+        let mut arguments = vec!["apply", "sheet.obj", "-o", "out.obj", "--feature", "groove"];
+        arguments.extend(more);
+        self.welt(&arguments)
+    }
+
+    fn read(&self, name: &str) -> String {
+        fs::read_to_string(self.0.join(name)).unwrap()
+    }
+
+    /// Names of all files.
+    fn files(&self) -> Vec<String> {
+        let entries = fs::read_dir(&self.0).unwrap();
+        let mut names: Vec<String> =
+            entries.map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect();
+        names.sort();
+        names
+    }
+}
+
+struct Run {
+    code: i32,
+    out: String,
+    err: String,
+}
+
+impl From<Output> for Run {
+    fn from(output: Output) -> Self {
+        let text = |bytes| String::from_utf8(bytes).unwrap();
+        Self { code: output.status.code().unwrap(), out: text(output.stdout), err: text(output.stderr) }
+    }
+}
+
+impl Run {
+    /// Ends with `code` and says all of `words` on standard error.
+    #[track_caller]
+    fn fails(&self, code: i32, words: &[&str]) {
+        assert_eq!(self.code, code, "{}{}", self.out, self.err);
+        for word in words {
+            assert!(self.err.contains(word), "no '{word}' in: {}", self.err);
+        }
+        assert!(!self.err.contains("panicked"), "{}", self.err);
+    }
+
+    #[track_caller]
+    fn succeeds(self) -> Self {
+        assert_eq!(self.code, 0, "{}{}", self.out, self.err);
+        self
+    }
+}
+
+#[test]
+fn marks_that_do_not_fit_the_mesh() {
+    let folder = Folder::new("marks");
+    folder.groove(&["--mark", "edge:1,4"]).fails(1, &["no edge 1,4", "vertex 1 has edges to 0, 2, 5"]);
+    folder.groove(&["--mark", "edge:1,99"]).fails(1, &["vertex 99 does not exist", "0 to 11"]);
+    folder.groove(&["--mark", "loop:1,2"]).fails(1, &["no selector 'loop'", "ring:A,B"]);
+    folder.groove(&["--mark", "select:absent.json"]).fails(1, &["absent.json"]);
+    assert_eq!(folder.files(), ["sheet.obj"]);
+}
+
+#[test]
+fn a_ring_that_ends_at_a_triangle_is_applied_and_says_where() {
+    let folder = Folder::new("triangle");
+    // From the lower side upwards through the last column: its second face is the triangle, face 5.
+    let run = folder.groove(&["--mark", "ring:2,3", "--set", "width=0.2", "--set", "depth=0.05"]).succeeds();
+    assert!(run.err.contains("ends at edge 6,7: face 5 is a triangle"), "{}", run.err);
+    assert!(run.err.contains("ends at edge 3,2: the mesh has a border there"), "{}", run.err);
+    assert!(folder.read("out.obj").lines().filter(|line| line.starts_with("v ")).count() > 12);
+}
+
+#[test]
+fn parameters_that_a_feature_cannot_take() {
+    let folder = Folder::new("parameters");
+    let set = |setting| folder.groove(&["--mark", "ring:1,2", "--set", setting]);
+    set("width=3").fails(1, &["edge ", "0.", "width"]);
+    set("breadth=0.2").fails(1, &["no parameter 'breadth'", "width, depth"]);
+    set("width").fails(1, &["NAME=VALUE"]);
+    set("width=wide").fails(1, &["wide"]);
+    set("width=-1").fails(1, &["greater than 0"]);
+    folder
+        .welt(&["apply", "sheet.obj", "-o", "out.obj", "--feature", "grove", "--mark", "ring:1,2"])
+        .fails(1, &["no feature 'grove'", "groove, ridge"]);
+    assert_eq!(folder.files(), ["sheet.obj"]);
+}
+
+#[test]
+fn a_typo_in_a_rule_file() {
+    let folder = Folder::new("rules");
+    fs::write(folder.0.join("typo.rules"), "% a comment\nruel x {\n}\n").unwrap();
+    let apply =
+        folder.welt(&["apply", "sheet.obj", "-o", "out.obj", "--rules", "typo.rules", "--mark", "ring:1,2"]);
+    for run in [folder.welt(&["rules", "check", "typo.rules"]), apply] {
+        run.fails(1, &["`ruel`", "typo.rules:2:1\n", "2 | ruel x {\n", "| ^^^^\n"]);
+    }
+    let run = folder.welt(&["rules", "check", "absent.rules"]);
+    run.fails(1, &["cannot read the rule file absent.rules"]);
+    assert!(!run.err.contains("-->"), "an unreadable file has no place: {}", run.err);
+    let shipped = Path::new(env!("CARGO_MANIFEST_DIR")).join("rules/linear.rules");
+    folder.welt(&["rules", "check", shipped.to_str().unwrap()]).succeeds();
+}
+
+#[test]
+fn files_that_cannot_be_read_or_written() {
+    let folder = Folder::new("files");
+    folder.welt(&["check", "absent.obj"]).fails(1, &["absent.obj"]);
+    folder.welt(&["check", "."]).fails(1, &["."]);
+    folder.welt(&["deviation", "sheet.obj", "absent.obj"]).fails(1, &["absent.obj"]);
+    let apply = |out| {
+        folder.welt(&[
+            "apply",
+            "sheet.obj",
+            "-o",
+            out,
+            "--feature",
+            "groove",
+            "--mark",
+            "ring:1,2",
+            "--set",
+            "width=0.2",
+        ])
+    };
+    apply("absent/out.obj").fails(1, &["absent", "does not exist", "create it first"]);
+    apply("out.xyz").fails(1, &["out.xyz", ".obj or .ply"]);
+    folder.welt(&["limit", "sheet.obj", "-o", "out.xyz"]).fails(1, &["out.xyz", ".obj or .ply"]);
+    folder.welt(&["limit", "sheet.obj", "-o", "absent/out.obj"]).fails(1, &["absent", "create it first"]);
+    assert_eq!(folder.files(), ["sheet.obj"]);
+}
+
+#[test]
+fn a_failure_leaves_an_output_that_was_there() {
+    let folder = Folder::new("kept");
+    fs::write(folder.0.join("out.obj"), "precious").unwrap();
+    folder.groove(&["--mark", "ring:1,2", "--set", "width=3"]).fails(1, &["width"]);
+    folder.groove(&["--mark", "edge:1,99"]).fails(1, &["99"]);
+    assert_eq!(folder.read("out.obj"), "precious");
+    assert_eq!(folder.files(), ["out.obj", "sheet.obj"]);
+}
+
+#[test]
+fn bad_usage_ends_with_2() {
+    let folder = Folder::new("usage");
+    folder.welt(&[]).fails(2, &["Usage"]);
+    folder.welt(&["polish"]).fails(2, &["polish"]);
+    folder.groove(&[]).fails(2, &["--mark"]);
+    folder.welt(&["apply", "sheet.obj", "-o", "out.obj", "--mark", "ring:1,2"]).fails(2, &["--feature"]);
+    folder.welt(&["limit", "sheet.obj", "-o", "out.obj", "--level", "11"]).fails(2, &["11", "0..=10"]);
+    folder.welt(&["deviation", "sheet.obj", "sheet.obj", "--samples", "0"]).fails(2, &["1..=64"]);
+    assert_eq!(
+        folder.welt(&["--version"]).succeeds().out.trim(),
+        concat!("welt ", env!("CARGO_PKG_VERSION"))
+    );
+}
+
+#[test]
+fn check_tells_defects_by_its_exit_code() {
+    let folder = Folder::new("check");
+    folder.welt(&["check", "sheet.obj"]).succeeds();
+    // A third face at an edge.
+    fs::write(folder.0.join("bad.obj"), format!("{SHEET}v 1 0 1\nf 2 6 13\n")).unwrap();
+    let run = folder.welt(&["check", "bad.obj"]);
+    assert_eq!(run.code, 1);
+    assert!(run.out.contains("1,5") || run.out.contains("1 and 5") || run.out.contains("1-5"), "{}", run.out);
+    for (file, defects) in [("sheet.obj", 0), ("bad.obj", 1)] {
+        let run = folder.welt(&["check", file, "--json"]);
+        let json: serde_json::Value = serde_json::from_str(&run.out).unwrap();
+        assert_eq!(json["defects"].as_array().unwrap().len(), defects, "{json}");
+        assert_eq!(run.code, i32::from(defects > 0));
+    }
+}
+
+#[test]
+fn a_dash_stands_for_standard_input_and_output() {
+    let folder = Folder::new("dash");
+    let more = ["--feature", "groove", "--mark", "ring:1,2", "--set", "width=0.2", "--set", "depth=0.05"];
+    let apply = |input, output, fed| {
+        let mut arguments = vec!["apply", input, "-o", output];
+        arguments.extend(more);
+        folder.welt_fed(&arguments, fed).succeeds()
+    };
+    apply("sheet.obj", "out.obj", "");
+    let piped = apply("-", "-", SHEET);
+    assert_eq!(piped.out, folder.read("out.obj"), "the mesh alone is on standard output");
+    assert!(piped.err.contains("groove"), "the report is on standard error: {}", piped.err);
+    folder.welt_fed(&["check", "-"], SHEET).succeeds();
+    folder.welt_fed(&["check", "-"], "f 1 2 9\n").fails(1, &["standard input", "1"]);
+    assert!(folder.welt(&["limit", "sheet.obj", "-o", "-"]).succeeds().out.contains("\nf "));
+}
+
+#[test]
+fn limit_at_level_0_keeps_vertices_and_faces() {
+    let folder = Folder::new("limit");
+    folder.welt(&["limit", "sheet.obj", "-o", "out.obj", "--level", "0"]).succeeds();
+    let lines = |text: &str, key: &str| -> Vec<String> {
+        text.lines().filter(|line| line.starts_with(key)).map(str::to_owned).collect()
+    };
+    let out = folder.read("out.obj");
+    assert_eq!(lines(&out, "f "), lines(SHEET, "f "));
+    let points: Vec<Vec<f64>> = lines(&out, "v ")
+        .iter()
+        .map(|line| line.split_whitespace().skip(1).map(|word| word.parse().unwrap()).collect())
+        .collect();
+    assert_eq!(points.len(), 12);
+    // Border vertices follow the cubic B-spline of the border, (a + 4 b + c) / 6, and 1 lies between 0 and 2.
+    assert!((points[1][0] - 1.0).abs() < 1e-12 && points[1][1].abs() < 1e-12, "{:?}", points[1]);
+    // An inner vertex with four squares round it stays the centre of its neighbours.
+    assert!((points[5][0] - 1.0).abs() < 1e-12 && (points[5][1] - 1.0).abs() < 1e-12, "{:?}", points[5]);
+}
+
+#[test]
+fn two_runs_write_the_same_bytes() {
+    let folder = Folder::new("twice");
+    let run = |out: &str| {
+        folder
+            .welt(&[
+                "apply",
+                "sheet.obj",
+                "-o",
+                out,
+                "--feature",
+                "ridge",
+                "--mark",
+                "ring:1,2",
+                "--set",
+                "width=0.3",
+            ])
+            .succeeds()
+    };
+    run("first.obj");
+    run("second.obj");
+    assert_eq!(folder.read("first.obj"), folder.read("second.obj"));
+}
+
+#[test]
+fn a_mesh_does_not_deviate_from_itself() {
+    let folder = Folder::new("deviation");
+    let run = folder.welt(&["deviation", "sheet.obj", "sheet.obj", "--json"]).succeeds();
+    let json: serde_json::Value = serde_json::from_str(&run.out).unwrap();
+    for value in ["max", "rms", "p95"] {
+        let value = json["both"][value].as_f64().unwrap();
+        assert!(value <= 1e-12, "{json}");
+    }
+}
