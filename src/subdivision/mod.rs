@@ -1,4 +1,4 @@
-//! Catmull-Clark subdivision: refinement, limit masks, evaluation.
+//! Catmull-Clark subdivision: refinement, limit masks, evaluation. Loop subdivision: refinement and limit masks.
 //!
 //! The boundary follows the cubic B-spline of its control points ("edge only" in OpenSubdiv's terms): a boundary
 //! vertex moves to (1, 6, 1)/8 of itself and its boundary neighbours, a boundary edge is halved, and a corner of a
