@@ -91,8 +91,8 @@ fn every_ring_takes_a_groove() {
                 narrow.extend(report.width.iter().flat_map(|d| [d.worst_low, d.worst_high]));
                 shallow.extend(report.extent.iter().flat_map(|d| [d.worst_low, d.worst_high]));
                 count += 1;
-                places += report.width.map_or(0, |d| d.stations);
-                off += report.width.map_or(0, |d| d.off);
+                places += report.width.as_ref().map_or(0, |d| d.stations);
+                off += report.width.as_ref().map_or(0, |d| d.off.len());
             }
         }
     }

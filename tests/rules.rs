@@ -409,7 +409,7 @@ fn includes_are_read_once_and_relative_to_their_file() {
     );
     let missing =
         RuleSet::load(std::path::Path::new("there/is/none.rules")).expect_err("no file").to_string();
-    assert!(missing.starts_with("error: cannot read the rule file there/is/none.rules: "), "{missing}");
+    assert!(missing.starts_with("cannot read the rule file there/is/none.rules: "), "{missing}");
 }
 
 #[track_caller]

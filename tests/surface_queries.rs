@@ -5,9 +5,10 @@ mod common;
 use glam::{DVec2, DVec3};
 use std::path::Path;
 use welt::io::{ImportOptions, import};
+use welt::job::Job;
 use welt::mesh::{FaceId, Mesh, Polygons};
 use welt::subdivision::evaluate;
-use welt::surface::{ClosestOptions, Facing, LimitSurface, compare, deviation};
+use welt::surface::{ClosestOptions, Deviation, Facing, LimitSurface, Sampling, compare, deviation_samples};
 
 const SHAPES: [&str; 8] = [
     "osd/catmark_cube.obj",
@@ -177,7 +178,7 @@ fn points_lifted_along_the_normal_come_back() {
             };
             let foot = surface.closest(point, &options).expect("a foot");
             worst = worst.max(foot.position.distance(origin.position) / size);
-            let signed = surface.signed_distance(point, origin.normal, f64::INFINITY).expect("a distance");
+            let signed = surface.signed_distance(point, origin.normal).expect("a distance");
             assert!((signed - lift).abs() < 1e-12 * size, "{file}: {signed} {lift}");
         }
         println!("{file}: {worst:.1e}");
@@ -331,13 +332,18 @@ fn plane_with_extraordinary_points_is_the_plane() {
 fn deviation_of_a_shifted_plane_is_the_shift() {
     let (low_mesh, high_mesh) = (sheet(6, |_, _| 0.0), sheet(6, |_, _| 0.5));
     let (low, high) = (LimitSurface::new(&low_mesh), LimitSurface::new(&high_mesh));
-    let up = deviation(&high, |_| true, &low, 8);
+    let samples =
+        |sampling| deviation_samples(&high, |_| true, &low, sampling, &Job::new()).expect("not cancelled");
+    let one_thread = samples(Sampling::default());
+    assert_eq!(one_thread, samples(Sampling { threads: 3, ..Sampling::default() }));
+    let up = Deviation::of(&one_thread);
     assert_eq!(up.samples, 36 * 64);
     for value in [up.max, up.rms, up.p95] {
         assert!((value - 0.5).abs() < 1e-12);
     }
     assert!(up.at.expect("a place").signed > 0.0);
-    let compared = compare(&low_mesh, &high_mesh, 4, &welt::job::Job::new()).expect("not cancelled");
+    let compared = compare(&low_mesh, &high_mesh, Sampling { per_side: 4, threads: 1 }, &Job::new())
+        .expect("not cancelled");
     assert_eq!(compared.both.samples, 2 * 36 * 16);
     assert!((compared.both.rms - 0.5).abs() < 1e-12);
     assert!(compared.first_to_second.at.expect("a place").signed < 0.0);
@@ -365,7 +371,7 @@ fn senseless_queries_have_defined_results() {
     let empty = LimitSurface::around(&mesh, &[]);
     assert!(empty.closest(DVec3::ZERO, &plain).is_none());
     assert!(empty.line_hits(DVec3::ZERO, DVec3::Z).is_empty());
-    assert!(empty.signed_distance(DVec3::ZERO, DVec3::Z, f64::INFINITY).is_none());
+    assert!(empty.signed_distance(DVec3::ZERO, DVec3::Z).is_none());
 }
 
 #[test]

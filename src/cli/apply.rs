@@ -68,7 +68,8 @@ fn options(arguments: &Apply) -> Result<Options, Failure> {
             FitMethod::Loop => Method::Loop,
             FitMethod::Solve => Method::Solve,
         },
-        samples: SAMPLES,
+        samples: if arguments.no_deviation { 0 } else { SAMPLES },
+        threads: arguments.threads,
         ..Options::default()
     };
     for setting in &arguments.set {

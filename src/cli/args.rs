@@ -93,6 +93,12 @@ pub struct Apply {
     /// Write a figure: control mesh, limit surface, deviation map
     #[arg(long, value_name = "FILE")]
     pub figure: Option<PathBuf>,
+    /// Do not measure deviations, which costs more than the feature itself
+    #[arg(long)]
+    pub no_deviation: bool,
+    /// Threads for measuring deviations; 0 for as many as the machine has
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    pub threads: usize,
     /// Print the report as JSON instead of text
     #[arg(long)]
     pub json: bool,
@@ -123,6 +129,9 @@ pub struct Deviation {
     /// Samples per side of each face
     #[arg(long, default_value_t = 8, value_parser = clap::value_parser!(u16).range(1..=64))]
     pub samples: u16,
+    /// Threads; 0 for as many as the machine has
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    pub threads: usize,
     /// Print JSON
     #[arg(long)]
     pub json: bool,

@@ -6,7 +6,7 @@ use super::files;
 use super::progress::watch;
 use serde::Serialize;
 use std::process::ExitCode;
-use welt::surface::{Comparison, compare};
+use welt::surface::{Comparison, Sampling, compare};
 
 #[derive(Serialize)]
 struct Output {
@@ -20,7 +20,8 @@ pub fn run(arguments: &args::Deviation) -> Result<ExitCode, Failure> {
     let load = |path| files::import(path, &arguments.import);
     let (first, second) = (load(&arguments.first)?, load(&arguments.second)?);
     let size = first.size();
-    let comparison = watch(|job| compare(&first, &second, arguments.samples.into(), job))?;
+    let sampling = Sampling { per_side: arguments.samples.into(), threads: arguments.threads };
+    let comparison = watch(|job| compare(&first, &second, sampling, job))?;
     if arguments.json {
         println!("{}", files::json(&Output { size, comparison })?);
         return Ok(ExitCode::SUCCESS);

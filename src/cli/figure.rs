@@ -3,7 +3,7 @@
 use super::error::Failure;
 use super::limit::{limit_mesh, refined_control};
 use glam::DVec3;
-use welt::feature::Report;
+use welt::feature::{Report, significant};
 use welt::mesh::{Mesh, Polygons};
 use welt::picture::{Camera, Content, EdgeKind, Figure, Finish, Image, Panel, Shape};
 use welt::subdivision::{Refinement, limit_points};
@@ -44,8 +44,6 @@ pub fn limit_picture(before: &Mesh, after: &Mesh, report: &Report) -> Result<Lim
         }
     }
     let surface = LimitSurface::new(before);
-    // Walls are thinner than this, folds smaller.
-    let reach = 0.1 * surface.size();
     let deviation = polygons
         .positions
         .iter()
@@ -53,7 +51,7 @@ pub fn limit_picture(before: &Mesh, after: &Mesh, report: &Report) -> Result<Lim
         .zip(near)
         .map(
             |((&point, &normal), near)| {
-                if near { surface.signed_distance(point, normal, reach).unwrap_or(0.0) } else { 0.0 }
+                if near { surface.signed_distance(point, normal).unwrap_or(0.0) } else { 0.0 }
             },
         )
         .collect();
@@ -158,7 +156,10 @@ fn dimensions(report: &Report) -> String {
     let parts: Vec<String> = [&report.width, &report.extent]
         .into_iter()
         .flatten()
-        .map(|d| format!("{} asked {}, reached {}", d.name, short(d.asked_mean), short(d.reached_mean)))
+        .filter(|d| d.stations > 0)
+        .map(|d| {
+            format!("{} asked {}, reached {}", d.name, significant(d.asked_mean), significant(d.reached_mean))
+        })
         .collect();
     if parts.is_empty() { "limit surface".to_owned() } else { parts.join("; ") }
 }
@@ -171,13 +172,4 @@ fn outside(report: &Report) -> String {
         ),
         _ => "difference to the surface before".to_owned(),
     }
-}
-
-/// Four significant digits.
-fn short(x: f64) -> String {
-    if x == 0.0 || !x.is_finite() {
-        return x.to_string();
-    }
-    let digits = (3 - x.abs().log10().floor() as i32).clamp(0, 12) as usize;
-    format!("{x:.digits$}")
 }

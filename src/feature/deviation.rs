@@ -5,7 +5,7 @@ use super::linear::affected_faces;
 use super::report::{Difference, Warning};
 use crate::job::{Cancelled, Job};
 use crate::mesh::{FaceId, Mesh};
-use crate::surface::{Deviation, DeviationSample, LimitSurface, deviation_samples};
+use crate::surface::{Deviation, DeviationSample, LimitSurface, Sampling, deviation_samples};
 use glam::DVec3;
 
 /// Rings of faces around the crossed ones that are frozen: the affected ones and one more, where feet may lie.
@@ -18,17 +18,21 @@ pub(super) struct Reference {
     footprint: Vec<FaceId>,
     /// Bounding box diagonal of the mesh before.
     size: f64,
-    /// Samples per side of a face.
-    samples: usize,
+    sampling: Sampling,
 }
 
 impl Reference {
-    pub(super) fn freeze(mesh: &Mesh, crossed: &[FaceId], footprint: Vec<FaceId>, samples: usize) -> Self {
+    pub(super) fn freeze(
+        mesh: &Mesh,
+        crossed: &[FaceId],
+        footprint: Vec<FaceId>,
+        sampling: Sampling,
+    ) -> Self {
         let mut faces = crossed.to_vec();
         for _ in 0..RINGS {
             faces = mesh.grow_faces(&faces);
         }
-        Self { surface: LimitSurface::around(mesh, &faces), footprint, size: mesh.size(), samples }
+        Self { surface: LimitSurface::around(mesh, &faces), footprint, size: mesh.size(), sampling }
     }
 
     pub(super) fn size(&self) -> f64 {
@@ -54,11 +58,11 @@ impl Reference {
         };
         let is_affected = |f: FaceId| affected.binary_search(&f).is_ok();
         job.step("deviation", 0.0)?;
-        let mut samples = deviation_samples(&now, is_affected, &self.surface, self.samples);
+        let mut samples = deviation_samples(&now, is_affected, &self.surface, self.sampling, job)?;
         let mut outside: Vec<DeviationSample> =
             samples.iter().filter(|s| !in_footprint(s.face)).copied().collect();
         job.step("deviation", 0.5)?;
-        let back = deviation_samples(&self.surface, was_affected, &now, self.samples);
+        let back = deviation_samples(&self.surface, was_affected, &now, self.sampling, job)?;
         outside.extend(back.iter().filter(|s| self.footprint.binary_search(&s.face).is_err()));
         samples.extend(back);
         Ok(Difference { total: Deviation::of(&samples), outside: Deviation::of(&outside) })
@@ -71,9 +75,9 @@ pub(super) struct Walls {
 }
 
 impl Walls {
-    /// Faces of the crossed components whose control points come near the box around the crossed faces. Other
-    /// components that touch are no walls of this body.
-    pub(super) fn around(mesh: &Mesh, crossed: &[FaceId]) -> Self {
+    /// Faces of the crossed components whose control points come as near as `depth` to the box around the crossed
+    /// faces. Other components that touch are no walls of this body.
+    pub(super) fn around(mesh: &Mesh, crossed: &[FaceId], depth: f64) -> Self {
         let corners = || crossed.iter().flat_map(|&f| mesh.face_vertices(f)).map(|v| mesh.position(v));
         let (low, high) = corners()
             .fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), p| (low.min(p), high.max(p)));
@@ -84,7 +88,7 @@ impl Walls {
                     .face_vertices(f)
                     .map(|v| mesh.position(v))
                     .fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(l, h), p| (l.min(p), h.max(p)));
-                face_low.cmple(high).all() && face_high.cmpge(low).all()
+                face_low.cmple(high + depth).all() && face_high.cmpge(low - depth).all()
             })
             .collect();
         Self { surface: LimitSurface::around(mesh, &near) }
@@ -105,7 +109,7 @@ impl Walls {
                     .filter(|hit| hit.s > 0.0 && hit.normal.dot(green.normal) < 0.0)
                     .map(|hit| hit.s)
                     .fold(f64::INFINITY, f64::min);
-                let depth = -green.target;
+                let depth = green.asked;
                 (thickness < depth).then_some((thickness, depth, green.vertex.0))
             })
             .min_by(|a, b| (a.0 - a.1).total_cmp(&(b.0 - b.1)))

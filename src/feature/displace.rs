@@ -74,32 +74,44 @@ pub(super) struct Green {
     pub(super) normal: DVec3,
     /// Asked height of the limit surface along the normal, model units.
     pub(super) target: f64,
+    /// Height asked for by the user, without corrections and sign.
+    pub(super) asked: f64,
     hold: Option<f64>,
 }
 
-/// The vertices that are displaced, with their targets. `extents` is the asked depth or height per mark.
-pub(super) fn greens(mesh: &Mesh, lines: &[LineVertex], profile: &Profile, extents: &[f64]) -> Vec<Green> {
-    let extent_of: FxHashMap<VertexId, f64> =
-        lines.iter().filter_map(|v| Some((v.vertex, *extents.get(v.mark?)?))).collect();
-    let mean = extents.iter().sum::<f64>() / extents.len().max(1) as f64;
+/// The vertices that are displaced, with their targets. `extents` is the depth or height per mark to aim at, `asked` that which the
+/// user asked for.
+pub(super) fn greens(
+    mesh: &Mesh,
+    lines: &[LineVertex],
+    profile: &Profile,
+    extents: &[f64],
+    asked: &[f64],
+) -> Vec<Green> {
+    let extent_of: FxHashMap<VertexId, [f64; 2]> = lines
+        .iter()
+        .filter_map(|v| Some((v.vertex, [*extents.get(v.mark?)?, *asked.get(v.mark?)?])))
+        .collect();
+    let mean = |all: &[f64]| all.iter().sum::<f64>() / all.len().max(1) as f64;
+    let means = [mean(extents), mean(asked)];
     lines
         .iter()
         .filter_map(|v| {
             let height = v.height(profile)?;
             let normal = limit_normal(mesh, v.vertex)?;
-            let extent = extent_of.get(&v.vertex).copied().unwrap_or_else(|| {
+            let [extent, asked] = extent_of.get(&v.vertex).copied().unwrap_or_else(|| {
                 // Inside a junction: what the lines around it have.
-                let (mut sum, mut count) = (0.0, 0.0);
-                for h in mesh.outgoing(v.vertex) {
-                    if let Some(extent) = extent_of.get(&mesh.target(h)) {
-                        sum += extent;
-                        count += 1.0;
-                    }
+                let around: Vec<[f64; 2]> =
+                    mesh.outgoing(v.vertex).filter_map(|h| extent_of.get(&mesh.target(h)).copied()).collect();
+                if around.is_empty() {
+                    return means;
                 }
-                if count > 0.0 { sum / count } else { mean }
+                let count = around.len() as f64;
+                [0, 1].map(|i| around.iter().map(|pair| pair[i]).sum::<f64>() / count)
             });
             let base = limit_position(mesh, v.vertex);
-            Some(Green { vertex: v.vertex, base, normal, target: height * extent, hold: v.hold })
+            let (target, asked) = (height * extent, height.abs() * asked);
+            Some(Green { vertex: v.vertex, base, normal, target, asked, hold: v.hold })
         })
         .collect()
 }
@@ -114,7 +126,7 @@ pub fn raise(mesh: &mut Mesh, heights: &[(VertexId, f64)]) -> Vec<VertexId> {
         match limit_normal(mesh, vertex) {
             Some(normal) => {
                 let base = limit_position(mesh, vertex);
-                greens.push(Green { vertex, base, normal, target, hold: None });
+                greens.push(Green { vertex, base, normal, target, asked: target.abs(), hold: None });
             }
             None => left_out.push(vertex),
         }

@@ -59,6 +59,21 @@ impl fmt::Display for Length {
     }
 }
 
+/// Four significant digits, at any scale.
+pub fn significant(x: f64) -> String {
+    const DIGITS: i32 = 4;
+    if x == 0.0 || !x.is_finite() {
+        return x.to_string();
+    }
+    let magnitude = x.abs().log10().floor() as i32;
+    if (-4..=6).contains(&magnitude) {
+        let decimals = (DIGITS - 1 - magnitude).max(0) as usize;
+        format!("{x:.decimals$}")
+    } else {
+        format!("{x:.3e}")
+    }
+}
+
 /// A number for model units, a text such as "30%" for a share of the edge.
 impl Serialize for Length {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
@@ -66,5 +81,35 @@ impl Serialize for Length {
             Self::Units(x) => serializer.serialize_f64(*x),
             Self::OfEdge(_) => serializer.serialize_str(&self.to_string()),
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn lengths_as_text() {
+        assert_eq!("30%".parse(), Ok(Length::OfEdge(0.3)));
+        assert_eq!(" 0.25 ".parse(), Ok(Length::Units(0.25)));
+        for bad in ["", "%", "inf", "nan", "1,5"] {
+            assert!(bad.parse::<Length>().is_err_and(|e| e.contains("is not a length")), "{bad}");
+        }
+        assert_eq!(Length::OfEdge(0.3).to_string(), "30%");
+    }
+
+    #[test]
+    fn four_significant_digits_at_any_scale() {
+        let cases = [
+            (0.0, "0"),
+            (1.6, "1.600"),
+            (0.012_345_6, "0.01235"),
+            (123_456.0, "123456"),
+            (1e300, "1.000e300"),
+        ];
+        for (x, text) in cases {
+            assert_eq!(significant(x), text);
+        }
+        assert_eq!(significant(-3.2e-9), "-3.200e-9");
     }
 }

@@ -11,6 +11,7 @@ use crate::mark::{self, Selection};
 use crate::mesh::{Domain, FaceId, HalfEdgeId, Mesh, Node, Value, VertexId};
 use crate::optimise::{self, FitReport, Method, Target};
 use crate::subdivision::limit_normal;
+use crate::surface::Sampling;
 use glam::DVec3;
 use rustc_hash::FxHashMap;
 use std::collections::BTreeMap;
@@ -37,11 +38,19 @@ pub struct Options {
     /// Samples per side of a face for measuring deviations, 8 as a rule; 0 measures none. Measuring also looks for
     /// walls thinner than the feature is deep. It costs more than the feature itself.
     pub samples: usize,
+    /// Threads for measuring deviations, 0 for all; the result does not depend on it.
+    pub threads: usize,
 }
 
 impl Default for Options {
     fn default() -> Self {
-        Self { lengths: BTreeMap::new(), numbers: BTreeMap::new(), method: Method::Solve, samples: 0 }
+        Self {
+            lengths: BTreeMap::new(),
+            numbers: BTreeMap::new(),
+            method: Method::Solve,
+            samples: 0,
+            threads: 1,
+        }
     }
 }
 
@@ -135,11 +144,28 @@ struct Run<'a> {
     feature: &'a Feature<'a>,
     options: &'a Options,
     selection: &'a Selection,
+    /// The vertices of the marked edges.
+    edges: Vec<(u32, u32)>,
     /// Asked width and depth per mark, in model units; empty without a profile.
     widths: Vec<f64>,
     extents: Vec<f64>,
     before: Counts,
+    /// Ids below these were there before.
+    first_vertex: usize,
+    first_face: usize,
     clock: Clock,
+}
+
+/// Width and depth per mark that a pass aims at, so that the asked ones are reached.
+#[derive(Clone)]
+struct Aim {
+    widths: Vec<f64>,
+    extents: Vec<f64>,
+}
+
+/// The largest relative miss.
+fn worst(misses: &[Option<[f64; 2]>]) -> f64 {
+    misses.iter().flatten().flatten().fold(0.0, |worst, ratio| worst.max((ratio - 1.0).abs()))
 }
 
 /// What one pass through place, rewrite, fit, displace, measure gave.
@@ -174,9 +200,16 @@ impl<'a> Run<'a> {
             feature,
             options,
             selection,
+            edges: selection
+                .marks
+                .iter()
+                .map(|mark| (mesh.source(mark.half_edge).0, mesh.target(mark.half_edge).0))
+                .collect(),
             widths: Vec::new(),
             extents: Vec::new(),
             before: Counts { vertices, edges, faces },
+            first_vertex: mesh.vertex_bound(),
+            first_face: mesh.face_bound(),
             clock: Clock::start(),
         };
         run.check_parameters()?;
@@ -235,17 +268,20 @@ impl<'a> Run<'a> {
         }
         let footprint = mesh.grow_faces(&crossed);
         let measured = self.options.samples > 0;
-        let reference =
-            measured.then(|| deviation::Reference::freeze(mesh, &crossed, footprint, self.options.samples));
-        let walls = measured.then(|| deviation::Walls::around(mesh, &crossed));
+        let sampling = Sampling { per_side: self.options.samples, threads: self.options.threads };
+        let deepest = self.extents.iter().fold(0.0, |a: f64, &b| a.max(b));
+        let reference = measured.then(|| deviation::Reference::freeze(mesh, &crossed, footprint, sampling));
+        let walls = measured.then(|| deviation::Walls::around(mesh, &crossed, deepest));
         let mut target = Target::freeze(mesh, &region);
         self.clock.lap("freeze");
 
         let mut corrections = 0;
-        let (mut widths, mut extents) = (self.widths.clone(), self.extents.clone());
+        let mut aim = Aim { widths: self.widths.clone(), extents: self.extents.clone() };
+        // The best pass so far: its worst miss, and what it aimed at.
+        let mut best: Option<(f64, Aim)> = None;
         let pass = loop {
             let checkpoint = mesh.begin();
-            let pass = self.pass(mesh, &widths, &extents, &target, job)?;
+            let pass = self.pass(mesh, &aim, &target, job)?;
             if let Some(wider) = self.uncovered(mesh, &pass.changed, &region) {
                 // Rules reached further than the frozen surface: freeze more and start again.
                 mesh.rollback(checkpoint);
@@ -253,13 +289,27 @@ impl<'a> Run<'a> {
                 target = Target::freeze(mesh, &region);
                 continue;
             }
-            if corrections < MOST_CORRECTIONS
-                && self.correct(mesh, checkpoint, &pass, &mut widths, &mut extents)
-            {
-                corrections += 1;
+            let misses = self.misses(&pass);
+            let miss = worst(&misses);
+            let is_best = best.as_ref().is_none_or(|best| miss <= best.0);
+            if miss <= GOOD_ENOUGH || (is_best && corrections >= MOST_CORRECTIONS) {
+                mesh.commit(checkpoint);
+                break pass;
+            }
+            if !is_best && corrections >= MOST_CORRECTIONS {
+                // The last correction made it worse: do the best one again.
+                mesh.rollback(checkpoint);
+                if let Some((_, best)) = best.take() {
+                    aim = best;
+                }
                 continue;
             }
-            break pass;
+            mesh.rollback(checkpoint);
+            if is_best {
+                best = Some((miss, aim.clone()));
+            }
+            self.correct(mesh, &misses, &mut aim);
+            corrections += 1;
         };
         self.report(mesh, pass, corrections, reference.as_ref(), walls.as_ref(), job)
     }
@@ -285,7 +335,7 @@ impl<'a> Run<'a> {
             mesh.grow_faces(changed).into_iter().map(|f| mesh.original_face(f)).collect();
         needed.sort_unstable();
         needed.dedup();
-        needed.retain(|f| region.binary_search(f).is_err() && f.index() < self.before.faces);
+        needed.retain(|f| region.binary_search(f).is_err() && f.index() < self.first_face);
         if needed.is_empty() {
             return None;
         }
@@ -293,16 +343,9 @@ impl<'a> Run<'a> {
         Some(needed)
     }
 
-    fn pass(
-        &mut self,
-        mesh: &mut Mesh,
-        widths: &[f64],
-        extents: &[f64],
-        target: &Target,
-        job: &Job,
-    ) -> Result<Pass, FeatureError> {
+    fn pass(&mut self, mesh: &mut Mesh, aim: &Aim, target: &Target, job: &Job) -> Result<Pass, FeatureError> {
         job.step("rules", 0.1)?;
-        self.place_marks(mesh, widths)?;
+        self.place_marks(mesh, &aim.widths)?;
         let run_options = grammar::RunOptions {
             parameters: self.options.numbers.clone(),
             job: Some(job),
@@ -331,7 +374,7 @@ impl<'a> Run<'a> {
         };
         if let Some(profile) = self.feature.profile {
             pass.lines = line_vertices(mesh);
-            pass.greens = greens(mesh, &pass.lines, profile, extents);
+            pass.greens = greens(mesh, &pass.lines, profile, &aim.extents, &self.extents);
             self.raise(mesh, &active, profile, &mut pass);
         }
         self.clock.lap("displace");
@@ -382,45 +425,34 @@ impl<'a> Run<'a> {
             .collect();
     }
 
-    /// Takes the pass back and changes `widths` and `extents` when the measured ones are off; false when they are
-    /// good enough.
-    fn correct(
-        &self,
-        mesh: &mut Mesh,
-        checkpoint: crate::mesh::Checkpoint,
-        pass: &Pass,
-        widths: &mut [f64],
-        extents: &mut [f64],
-    ) -> bool {
-        let Some(profile) = self.feature.profile else { return false };
-        let corrections: Vec<Option<[f64; 2]>> = self.corrections(pass);
-        let off = |c: &[f64; 2]| c.iter().any(|ratio| (ratio - 1.0).abs() > GOOD_ENOUGH);
-        if !corrections.iter().flatten().any(off) {
-            mesh.commit(checkpoint);
-            return false;
-        }
-        mesh.rollback(checkpoint);
-        for (i, correction) in corrections.iter().enumerate() {
-            let Some([width, extent]) = correction else { continue };
+    /// Changes what is aimed at by what was missed. The mesh is as before the pass.
+    fn correct(&self, mesh: &Mesh, misses: &[Option<[f64; 2]>], aim: &mut Aim) {
+        let Some(profile) = self.feature.profile else { return };
+        for (i, miss) in misses.iter().enumerate() {
+            let Some([width, extent]) = miss else { continue };
             let mark = &self.selection.marks[i];
             // The formula is affine in the width: what is missing is added, not multiplied.
-            let wanted = widths[i] + self.widths[i] * (1.0 - 1.0 / width);
+            let wanted = aim.widths[i] + self.widths[i] * (1.0 - 1.0 / width);
             let fits = |width: f64| cuts(mesh, mark, profile, width).is_ok();
-            widths[i] = match cuts(mesh, mark, profile, wanted) {
-                Ok(_) => wanted,
+            match cuts(mesh, mark, profile, wanted) {
+                Ok(_) => aim.widths[i] = wanted,
                 Err(WidthError { low, high, .. }) => {
                     // As near as the edge allows; the report says what was reached.
-                    let inside = wanted.clamp(low * (1.0 + 1e-9), high * (1.0 - 1e-9));
-                    if fits(inside) { inside } else { widths[i] }
+                    let inside = wanted.min(high * (1.0 - 1e-9)).max(low * (1.0 + 1e-9));
+                    if fits(inside) {
+                        aim.widths[i] = inside;
+                    }
                 }
-            };
-            extents[i] *= extent;
+            }
+            aim.extents[i] *= extent;
         }
-        true
     }
 
     /// Asked over reached width and extent per mark: measured, or the mean of the measured neighbours.
-    fn corrections(&self, pass: &Pass) -> Vec<Option<[f64; 2]>> {
+    fn misses(&self, pass: &Pass) -> Vec<Option<[f64; 2]>> {
+        if self.feature.profile.is_none() {
+            return Vec::new();
+        }
         let mut measured: Vec<Option<[f64; 2]>> = vec![None; self.selection.marks.len()];
         let mut around: Vec<(f64, [f64; 2])> = vec![(0.0, [0.0; 2]); self.selection.marks.len()];
         for (station, reached) in pass.stations.iter().zip(&pass.reached) {
@@ -488,7 +520,7 @@ impl<'a> Run<'a> {
         self.clock.lap("deviation");
         let [vertices, edges, faces] = mesh.counts();
         let mut new_valences = BTreeMap::new();
-        for v in (self.before.vertices..mesh.vertex_bound()).map(|v| VertexId(v as u32)) {
+        for v in (self.first_vertex..mesh.vertex_bound()).map(|v| VertexId(v as u32)) {
             if mesh.has_vertex(v) {
                 *new_valences.entry(mesh.valence(v)).or_default() += 1;
             }
@@ -540,26 +572,28 @@ impl<'a> Run<'a> {
         part: impl Fn(&Reached) -> f64,
     ) -> Option<Dimension> {
         let profile = self.feature.profile?;
-        let pairs: Vec<(f64, f64)> = pass
+        let found: Vec<(usize, f64)> = pass
             .stations
             .iter()
             .zip(&pass.reached)
-            .filter_map(|(station, reached)| Some((asked[station.mark], part(reached.as_ref()?))))
+            .filter_map(|(station, reached)| Some((station.mark, part(reached.as_ref()?))))
             .collect();
-        if pairs.is_empty() {
-            return None;
-        }
-        let count = pairs.len() as f64;
-        let ratios = || pairs.iter().map(|(asked, reached)| reached / asked);
+        let count = found.len() as f64;
+        let ratios = || found.iter().map(|&(mark, reached)| (mark, reached / asked[mark]));
+        // Means and extremes of nothing are no numbers.
+        let extreme = |pick: fn(f64, f64) -> f64| ratios().map(|r| r.1).fold(f64::NAN, pick);
         Some(Dimension {
             name,
             asked: self.length(profile, name),
-            stations: pairs.len(),
-            asked_mean: pairs.iter().map(|pair| pair.0).sum::<f64>() / count,
-            reached_mean: pairs.iter().map(|pair| pair.1).sum::<f64>() / count,
-            off: ratios().filter(|ratio| (ratio - 1.0).abs() > NOTICEABLE).count(),
-            worst_low: ratios().fold(f64::INFINITY, f64::min),
-            worst_high: ratios().fold(0.0, f64::max),
+            stations: found.len(),
+            asked_mean: found.iter().map(|&(mark, _)| asked[mark]).sum::<f64>() / count,
+            reached_mean: found.iter().map(|pair| pair.1).sum::<f64>() / count,
+            off: ratios()
+                .filter(|(_, ratio)| (ratio - 1.0).abs() > NOTICEABLE)
+                .map(|(mark, _)| self.edges[mark])
+                .collect(),
+            worst_low: extreme(f64::min),
+            worst_high: extreme(f64::max),
         })
     }
 

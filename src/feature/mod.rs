@@ -14,7 +14,7 @@ mod report;
 mod settings;
 
 pub use displace::raise;
-pub use length::Length;
+pub use length::{Length, significant};
 pub use linear::{Feature, FeatureError, Options, apply};
 pub use place::WidthError;
 pub use profile::{ALL as PROFILES, GROOVE, Line, Parameter, Profile, RIDGE};

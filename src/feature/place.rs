@@ -1,5 +1,6 @@
 //! Where the lines of a profile cross each marked edge.
 
+use super::length::significant;
 use super::profile::{Profile, full_width, half_width};
 use crate::mark::Mark;
 use crate::mesh::{HalfEdgeId, Mesh};
@@ -12,10 +13,7 @@ const LEAST_SINE: f64 = 0.1;
 
 /// A width that an edge cannot take. All lengths in model units.
 #[derive(Clone, PartialEq, Debug, thiserror::Error)]
-#[error(
-    "a width of {asked:.6} does not fit edge {},{} (length {length:.6}); it takes widths from {low:.6} to {high:.6}",
-    edge.0, edge.1
-)]
+#[error("{}", self.message())]
 pub struct WidthError {
     /// The edge.
     pub edge: (u32, u32),
@@ -25,8 +23,26 @@ pub struct WidthError {
     pub asked: f64,
     /// Least width.
     pub low: f64,
-    /// Greatest width.
+    /// Greatest width; below `low` where the mark is too near an end of the edge for any width.
     pub high: f64,
+}
+
+impl WidthError {
+    fn message(&self) -> String {
+        let Self { edge: (a, b), length, asked, low, high } = self;
+        let [length, asked, low, high] = [length, asked, low, high].map(|x| significant(*x));
+        if !(self.length > 0.0) {
+            return format!("edge {a},{b} has no length; merge its vertices (--weld 0) or do not mark it");
+        }
+        if self.high < self.low {
+            return format!(
+                "the mark on edge {a},{b} is too near to one of its ends for any width; move it inwards"
+            );
+        }
+        format!(
+            "a width of {asked} does not fit edge {a},{b} (length {length}); it takes widths from {low} to {high}"
+        )
+    }
 }
 
 /// The direction in which a feature crosses the marked edge: along the sides of the faces beside it.
@@ -67,8 +83,7 @@ pub(super) fn cuts(mesh: &Mesh, mark: &Mark, profile: &Profile, width: f64) -> R
     let lowest = CLEARANCE * length;
     let highest = (mark.t.min(1.0 - mark.t) - CLEARANCE) * length;
     let half = half_width(width / sine, length);
-    // A zero-length edge fails here too.
-    if !(half >= lowest && half <= highest) {
+    if !(length > 0.0 && half >= lowest && half <= highest) {
         return Err(WidthError {
             edge: (mesh.source(h).0, mesh.target(h).0),
             length,

@@ -1,6 +1,6 @@
 //! What a feature did, for people and programs.
 
-use super::length::Length;
+use super::length::{Length, significant};
 use crate::mark::StripEnd;
 use crate::mesh::{FaceId, Renumbering, VertexId};
 use crate::optimise::{FitReport, Stop};
@@ -21,7 +21,7 @@ pub struct Counts {
 }
 
 /// Asked and reached dimension over the straight stretches of a feature, in model units.
-#[derive(Clone, Copy, PartialEq, Debug, Serialize)]
+#[derive(Clone, PartialEq, Debug, Serialize)]
 pub struct Dimension {
     /// Name of the parameter.
     pub name: &'static str,
@@ -29,12 +29,13 @@ pub struct Dimension {
     pub asked: Length,
     /// Marked edges at which the band runs straight, where it was measured.
     pub stations: usize,
-    /// Mean of what was asked for at those edges.
+    /// Mean of what was asked for at those edges (not a number, `null` in JSON, where there are none; so are the rest).
     pub asked_mean: f64,
     /// Mean of what was reached.
     pub reached_mean: f64,
-    /// Places that are off by more than 3 %.
-    pub off: usize,
+    /// Marked edges (numbers of vertices before the feature) that are off by more than 3 %: what the edge allows, or
+    /// what its neighbours leave.
+    pub off: Vec<(u32, u32)>,
     /// Least reached as a fraction of what was asked for.
     pub worst_low: f64,
     /// Greatest reached as a fraction of what was asked for.
@@ -83,7 +84,9 @@ impl fmt::Display for Warning {
             ),
             Self::Wall { thickness, depth, vertex } => write!(
                 f,
-                "a depth of {depth:.6} exceeds the wall, which is {thickness:.6} thick at vertex {vertex}"
+                "a depth of {} exceeds the wall, which is {} thick at vertex {vertex}",
+                significant(*depth),
+                significant(*thickness)
             ),
         }
     }
@@ -180,7 +183,7 @@ impl fmt::Display for Report {
         let Counts { vertices, faces, .. } = self.after;
         writeln!(
             f,
-            "{}: {} marked edges; {} vertices (+{}), {} faces (+{})",
+            "{}: {} marked edges; {} vertices ({:+}), {} faces ({:+})",
             self.feature,
             self.marks,
             vertices,
@@ -192,16 +195,20 @@ impl fmt::Display for Report {
             self.rules.iter().filter(|r| r.1 > 0).map(|(name, count)| format!("{name} {count}")).collect();
         writeln!(f, "rules: {}", if rules.is_empty() { "none applied".into() } else { rules.join(", ") })?;
         for d in [&self.width, &self.extent].into_iter().flatten() {
+            if d.stations == 0 {
+                writeln!(f, "{}: asked {}, not measured: no straight stretch", d.name, d.asked)?;
+                continue;
+            }
             writeln!(
                 f,
-                "{}: asked {}, reached {:.6} of {:.6} in the mean ({:+.2} % to {:+.2} %; {} of {} places off by more than 3 %)",
+                "{}: asked {}, reached {} of {} in the mean ({:+.2} % to {:+.2} %; {} of {} places off by more than 3 %)",
                 d.name,
                 d.asked,
-                d.reached_mean,
-                d.asked_mean,
+                significant(d.reached_mean),
+                significant(d.asked_mean),
                 100.0 * (d.worst_low - 1.0),
                 100.0 * (d.worst_high - 1.0),
-                d.off,
+                d.off.len(),
                 d.stations
             )?;
         }

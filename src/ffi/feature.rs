@@ -14,7 +14,7 @@ use crate::feature::{self, Feature, PROFILES, Profile};
 use crate::job::Job;
 use crate::mesh::VertexId;
 use crate::optimise::Method;
-use crate::surface::SAMPLES;
+use crate::surface::{SAMPLES, Sampling};
 use std::collections::BTreeSet;
 use std::ffi::c_char;
 
@@ -313,7 +313,9 @@ pub unsafe extern "C" fn welt_mesh_deviation(
         }
         let idle = Job::new();
         let job = job.map_or(&idle, |job| &job.job);
-        let found = crate::surface::compare(first, second, samples as usize, job)?.both;
+        let found =
+            crate::surface::compare(first, second, Sampling { per_side: samples as usize, threads: 1 }, job)?
+                .both;
         values.fill([found.max, found.rms, found.p95]);
         Ok(())
     };

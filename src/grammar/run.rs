@@ -23,9 +23,9 @@ pub struct Limits {
 }
 
 impl Default for Limits {
-    /// 10 million applications, 10^9 steps, no limit of time.
+    /// 10 million applications, 10^9 steps, one minute.
     fn default() -> Self {
-        Self { applications: 10_000_000, steps: 1_000_000_000, time: None }
+        Self { applications: 10_000_000, steps: 1_000_000_000, time: Some(Duration::from_secs(60)) }
     }
 }
 

@@ -6,8 +6,57 @@ use glam::DVec3;
 /// The limit curves of the boundary edges near a feature: uniform cubic B-splines (boundary rule edge-only).
 #[derive(Clone, Default, Debug)]
 pub struct BoundaryCurves {
-    /// Control points of one segment per boundary edge.
-    segments: Vec<[DVec3; 4]>,
+    segments: Vec<Segment>,
+}
+
+/// The curve of one boundary edge.
+#[derive(Clone, Debug)]
+struct Segment {
+    control: [DVec3; 4],
+    /// Box around the control points, which holds the curve.
+    low: DVec3,
+    high: DVec3,
+}
+
+impl Segment {
+    fn new(control: [DVec3; 4]) -> Self {
+        let (low, high) = control
+            .iter()
+            .fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), p| (low.min(*p), high.max(*p)));
+        Self { control, low, high }
+    }
+
+    /// The squared distance that no point of the curve undercuts.
+    fn bound(&self, point: DVec3) -> f64 {
+        point.distance_squared(point.clamp(self.low, self.high))
+    }
+
+    /// The closest point and its squared distance.
+    fn closest(&self, point: DVec3) -> (f64, DVec3) {
+        let (mut u, mut least) = (0.0, f64::INFINITY);
+        for i in 0..=STARTS {
+            let start = i as f64 / STARTS as f64;
+            let distance = evaluate(&self.control, start)[0].distance_squared(point);
+            if distance < least {
+                (u, least) = (start, distance);
+            }
+        }
+        for _ in 0..NEWTON_STEPS {
+            let [p, d, dd] = evaluate(&self.control, u);
+            let slope = (p - point).dot(d);
+            let curvature = d.length_squared() + (p - point).dot(dd);
+            if curvature <= 0.0 {
+                break;
+            }
+            let next = (u - slope / curvature).clamp(0.0, 1.0);
+            if (next - u).abs() < 1e-15 {
+                break;
+            }
+            u = next;
+        }
+        let foot = evaluate(&self.control, u)[0];
+        (foot.distance_squared(point), foot)
+    }
 }
 
 /// Parameters at which a segment is looked at before Newton takes over.
@@ -26,42 +75,26 @@ impl BoundaryCurves {
                 [mesh.prev(h), h, mesh.next(h), mesh.next(mesh.next(h))]
                     .map(|h| mesh.position(mesh.source(h)))
             })
+            .map(Segment::new)
             .collect();
         Self { segments }
     }
 
     /// The point of the curves closest to `point`; `None` where there is no boundary.
     pub fn closest(&self, point: DVec3) -> Option<DVec3> {
-        let mut best: Option<(f64, DVec3)> = None;
-        for segment in &self.segments {
-            let (mut u, mut least) = (0.0, f64::INFINITY);
-            for i in 0..=STARTS {
-                let start = i as f64 / STARTS as f64;
-                let distance = evaluate(segment, start)[0].distance_squared(point);
-                if distance < least {
-                    (u, least) = (start, distance);
+        // The segment with the least bound first: it is nearly always the one, and rules out the others.
+        let bounds: Vec<f64> = self.segments.iter().map(|segment| segment.bound(point)).collect();
+        let first = (0..bounds.len()).min_by(|&a, &b| bounds[a].total_cmp(&bounds[b]))?;
+        let mut best = self.segments[first].closest(point);
+        for (segment, bound) in self.segments.iter().zip(bounds) {
+            if bound < best.0 {
+                let found = segment.closest(point);
+                if found.0 < best.0 {
+                    best = found;
                 }
-            }
-            for _ in 0..NEWTON_STEPS {
-                let [p, d, dd] = evaluate(segment, u);
-                let slope = (p - point).dot(d);
-                let curvature = d.length_squared() + (p - point).dot(dd);
-                if curvature <= 0.0 {
-                    break;
-                }
-                let next = (u - slope / curvature).clamp(0.0, 1.0);
-                if (next - u).abs() < 1e-15 {
-                    break;
-                }
-                u = next;
-            }
-            let foot = evaluate(segment, u)[0];
-            let distance = foot.distance_squared(point);
-            if best.is_none_or(|(least, _)| distance < least) {
-                best = Some((distance, foot));
             }
         }
-        best.map(|(_, foot)| foot)
+        Some(best.1)
     }
 }
 
@@ -98,7 +131,9 @@ mod tests {
 
     #[test]
     fn closest_on_a_straight_boundary() {
-        let curves = BoundaryCurves { segments: vec![[0.0, 1.0, 2.0, 3.0].map(|x| DVec3::new(x, 0.0, 0.0))] };
+        let curves = BoundaryCurves {
+            segments: vec![Segment::new([0.0, 1.0, 2.0, 3.0].map(|x| DVec3::new(x, 0.0, 0.0)))],
+        };
         let foot = curves.closest(DVec3::new(1.3, 5.0, 2.0)).expect("a boundary");
         assert!((foot - DVec3::new(1.3, 0.0, 0.0)).length() < 1e-12);
         let end = curves.closest(DVec3::new(-4.0, 0.0, 0.0)).expect("a boundary");

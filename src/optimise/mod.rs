@@ -149,7 +149,7 @@ pub fn fit(
     let (rim, inner): (Vec<VertexId>, Vec<VertexId>) =
         active.iter().partition(|&&v| mesh.is_boundary_vertex(v));
     // The limit of a boundary vertex depends on boundary vertices only, so the rim comes first.
-    let rim_steps = fit_rim(mesh, &rim, target, method, job)?;
+    let (rim_steps, rim_gap) = fit_rim(mesh, &rim, target, method, job)?;
     let mut lines = Lines::aim(mesh, &inner, target, &mut report.missed);
     let system = (method == Method::Solve).then(|| lines.system()).flatten();
     let limit = if method == Method::Loop { LOOP_STEPS } else { SOLVE_STEPS };
@@ -157,7 +157,7 @@ pub fn fit(
     report.stop = Stop::StepLimit;
     for step in 0..=limit {
         job.step("fit", f64::from(step) / f64::from(limit + 1))?;
-        report.residual = lines.measure(mesh, target);
+        report.residual = lines.measure(mesh, target).max(rim_gap);
         report.steps = step.max(rim_steps);
         if report.residual <= tolerance {
             report.stop = Stop::Converged;
@@ -167,6 +167,8 @@ pub fn fit(
             lines.advance(mesh, system.as_ref());
         }
     }
+    report.missed.extend(lines.lost());
+    report.missed.sort_unstable();
     Ok(report)
 }
 
@@ -180,9 +182,16 @@ struct Lines {
     gaps: Vec<f64>,
     /// Where the lines met the frozen surface last.
     hits: Vec<Option<Hit>>,
+    /// True where neither line nor closest point found the frozen surface at the last measurement.
+    nothing: Vec<bool>,
 }
 
 impl Lines {
+    /// Vertices whose limit points lost the frozen surface.
+    fn lost(&self) -> impl Iterator<Item = u32> {
+        self.vertices.iter().zip(&self.nothing).filter(|(_, nothing)| **nothing).map(|(v, _)| v.0)
+    }
+
     /// Steps 1 to 4 of the paper: foot of each limit point along the control normal, and the normal there.
     fn aim(mesh: &Mesh, vertices: &[VertexId], target: &Target, missed: &mut Vec<u32>) -> Self {
         let mut lines = Self {
@@ -191,6 +200,7 @@ impl Lines {
             normals: Vec::new(),
             gaps: Vec::new(),
             hits: Vec::new(),
+            nothing: Vec::new(),
         };
         for &v in vertices {
             let mask = limit_mask(mesh, v);
@@ -205,6 +215,7 @@ impl Lines {
         }
         lines.gaps = vec![0.0; lines.vertices.len()];
         lines.hits = vec![None; lines.vertices.len()];
+        lines.nothing = vec![false; lines.vertices.len()];
         lines
     }
 
@@ -235,13 +246,11 @@ impl Lines {
             if self.hits[i].is_some_and(|hit| is_grazing(target, point, &hit)) {
                 self.hits[i] = None;
             }
-            self.gaps[i] = match &self.hits[i] {
-                Some(hit) => hit.s,
-                None => {
-                    let foot = closest(target, point, Some(*normal));
-                    foot.map_or(0.0, |foot| (foot.position - point).dot(*normal))
-                }
-            };
+            let gap = self.hits[i].map(|hit| hit.s).or_else(|| {
+                closest(target, point, Some(*normal)).map(|foot| (foot.position - point).dot(*normal))
+            });
+            self.nothing[i] = gap.is_none();
+            self.gaps[i] = gap.unwrap_or(0.0);
             largest = largest.max(self.gaps[i].abs());
         }
         largest
@@ -290,14 +299,15 @@ fn closest(target: &Target, point: DVec3, direction: Option<DVec3>) -> Option<Fo
     target.surface.closest(point, &ClosestOptions { radius: target.reach, facing })
 }
 
-/// Moves boundary vertices so that their limit points lie on the frozen boundary curve; returns the steps taken.
+/// Moves boundary vertices so that their limit points lie on the frozen boundary curve; returns the steps taken and the
+/// largest distance that is left.
 fn fit_rim(
     mesh: &mut Mesh,
     rim: &[VertexId],
     target: &Target,
     method: Method,
     job: &Job,
-) -> Result<u32, Cancelled> {
+) -> Result<(u32, f64), Cancelled> {
     let masks: Vec<LimitMask> = rim.iter().map(|&v| limit_mask(mesh, v)).collect();
     let unknowns: FxHashMap<VertexId, u32> = rim.iter().enumerate().map(|(i, &v)| (v, i as u32)).collect();
     let rows = masks.iter().map(|mask| {
@@ -305,7 +315,7 @@ fn fit_rim(
     });
     let system = (method == Method::Solve).then(|| LeastSquares::new(rows.collect(), rim.len())).flatten();
     let limit = if method == Method::Loop { LOOP_STEPS } else { SOLVE_STEPS };
-    for step in 0..limit {
+    for step in 0..=limit {
         job.step("fit", 0.0)?;
         let gaps: Vec<DVec3> = masks
             .iter()
@@ -314,8 +324,9 @@ fn fit_rim(
                 target.boundary.closest(point).map_or(DVec3::ZERO, |foot| foot - point)
             })
             .collect();
-        if gaps.iter().all(|gap| gap.length() <= TOLERANCE * target.reach) {
-            return Ok(step);
+        let largest = gaps.iter().fold(0.0, |largest: f64, gap| largest.max(gap.length()));
+        if largest <= TOLERANCE * target.reach || step == limit {
+            return Ok((step, largest));
         }
         let axes = |axis: usize| gaps.iter().map(move |gap| gap[axis]);
         let shifts: [Vec<f64>; 3] = [0, 1, 2].map(|axis| match &system {
@@ -329,5 +340,5 @@ fn fit_rim(
             }
         }
     }
-    Ok(limit)
+    Ok((limit, 0.0))
 }

@@ -11,6 +11,8 @@ use serde::Serialize;
 
 /// The usual number of samples per side of a face.
 pub const SAMPLES: usize = 8;
+/// More threads than this are not started.
+const MOST_THREADS: usize = 64;
 /// Distances below this share of the size are looked for along the normal first.
 const NEAR: f64 = 0.1;
 
@@ -72,17 +74,67 @@ impl Deviation {
     }
 }
 
-/// Samples `from` in the faces that `choose` accepts, `per_side` x `per_side` to a quad and half as many each way to
-/// the quadrants of another face, and measures each to `to`. 8 per side is the usual choice; 0 counts as 1. Samples
-/// for which `to` has no answer (it is empty) are left out.
+/// How surfaces are compared.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub struct Sampling {
+    /// Samples per side of a face: `per_side` x `per_side` to a quad and half as many each way to the quadrants of
+    /// another face; 0 counts as 1.
+    pub per_side: usize,
+    /// Threads to use; 0 for as many as the machine has. The result does not depend on it.
+    pub threads: usize,
+}
+
+impl Default for Sampling {
+    fn default() -> Self {
+        Self { per_side: SAMPLES, threads: 1 }
+    }
+}
+
+/// Samples `from` in the faces that `choose` accepts and measures each sample to `to`. Samples for which `to` has no
+/// answer (it is empty) are left out.
+///
+/// # Errors
+/// [`Cancelled`].
 pub fn deviation_samples(
     from: &LimitSurface,
     choose: impl Fn(FaceId) -> bool,
     to: &LimitSurface,
-    per_side: usize,
-) -> Vec<DeviationSample> {
+    sampling: Sampling,
+    job: &Job,
+) -> Result<Vec<DeviationSample>, Cancelled> {
+    let faces: Vec<FaceId> = from.faces().filter(|&face| choose(face)).collect();
+    let available = || std::thread::available_parallelism().map_or(1, usize::from);
+    let threads = if sampling.threads == 0 { available() } else { sampling.threads };
+    let chunk = faces.len().div_ceil(threads.clamp(1, MOST_THREADS)).max(1);
+    let work = |faces: &[FaceId]| sample_faces(from, faces, to, sampling.per_side, job);
+    if chunk >= faces.len() {
+        return work(&faces);
+    }
+    let parts = std::thread::scope(|scope| {
+        let workers: Vec<_> = faces.chunks(chunk).map(|faces| scope.spawn(move || work(faces))).collect();
+        workers.into_iter().map(|worker| worker.join()).collect::<Vec<_>>()
+    });
     let mut samples = Vec::new();
-    for face in from.faces().filter(|&face| choose(face)) {
+    for part in parts {
+        // A panic in a worker goes on in the caller's thread.
+        samples.extend(part.unwrap_or_else(|panic| std::panic::resume_unwind(panic))?);
+    }
+    Ok(samples)
+}
+
+/// The samples of `faces`, in order.
+fn sample_faces(
+    from: &LimitSurface,
+    faces: &[FaceId],
+    to: &LimitSurface,
+    per_side: usize,
+    job: &Job,
+) -> Result<Vec<DeviationSample>, Cancelled> {
+    let mut samples = Vec::new();
+    for &face in faces {
+        if job.is_cancelled() {
+            return Err(Cancelled);
+        }
         let patches = from.patch_count(face);
         let cells = if patches == 1 { per_side } else { per_side.div_ceil(2) }.max(1);
         let width = 1.0 / cells as f64;
@@ -96,7 +148,7 @@ pub fn deviation_samples(
             }
         }
     }
-    samples
+    Ok(samples)
 }
 
 /// [`LimitSurface::signed_distance`], fast where the surfaces are close: the foot near the hit of the sample's normal.
@@ -107,18 +159,8 @@ fn distance_to(to: &LimitSurface, point: DVec3, normal: DVec3) -> Option<f64> {
         .filter(|foot| foot.normal.dot(normal) > 0.0);
     match foot {
         Some(foot) => Some(foot.distance.copysign((point - foot.position).dot(foot.normal))),
-        None => to.signed_distance(point, normal, NEAR * to.size()),
+        None => to.signed_distance(point, normal),
     }
-}
-
-/// The deviation of `from` (in the faces that `choose` accepts) from `to`, one way; see [`deviation_samples`].
-pub fn deviation(
-    from: &LimitSurface,
-    choose: impl Fn(FaceId) -> bool,
-    to: &LimitSurface,
-    per_side: usize,
-) -> Deviation {
-    Deviation::of(&deviation_samples(from, choose, to, per_side))
 }
 
 /// Two limit surfaces compared both ways.
@@ -132,19 +174,19 @@ pub struct Comparison {
     pub second_to_first: Deviation,
 }
 
-/// Compares the limit surfaces of two control meshes with `per_side` x `per_side` samples per face, both ways.
+/// Compares the limit surfaces of two control meshes both ways.
 ///
 /// # Errors
 /// [`Cancelled`].
-pub fn compare(first: &Mesh, second: &Mesh, per_side: usize, job: &Job) -> Result<Comparison, Cancelled> {
+pub fn compare(first: &Mesh, second: &Mesh, sampling: Sampling, job: &Job) -> Result<Comparison, Cancelled> {
     const STAGE: &str = "deviation";
     job.step(STAGE, 0.0)?;
     let (first, second) = (LimitSurface::new(first), LimitSurface::new(second));
     job.step(STAGE, 0.1)?;
-    let mut samples = deviation_samples(&first, |_| true, &second, per_side);
+    let mut samples = deviation_samples(&first, |_| true, &second, sampling, job)?;
     let first_to_second = Deviation::of(&samples);
     job.step(STAGE, 0.55)?;
-    let back = deviation_samples(&second, |_| true, &first, per_side);
+    let back = deviation_samples(&second, |_| true, &first, sampling, job)?;
     samples.extend_from_slice(&back);
     let (both, second_to_first) = (Deviation::of(&samples), Deviation::of(&back));
     Ok(Comparison { both, first_to_second, second_to_first })

@@ -16,7 +16,7 @@ mod near;
 mod tree;
 
 pub use closest::{ClosestOptions, Facing, Foot};
-pub use deviation::{Comparison, Deviation, DeviationSample, SAMPLES, compare, deviation, deviation_samples};
+pub use deviation::{Comparison, Deviation, DeviationSample, SAMPLES, Sampling, compare, deviation_samples};
 pub use line::Hit;
 
 use crate::mesh::{FaceId, Mesh};
@@ -141,14 +141,20 @@ impl LimitSurface {
         found
     }
 
-    /// The distance of `point` to the surface, positive on the side of its normals. The closest point whose normal
-    /// has an angle below 90 degrees with `normal` counts, so that a thin wall does not snap to its other side; where
-    /// there is none within `reach` (the point belongs to a fold), the closest point. `None` when the surface is empty
-    /// or a coordinate is not finite.
-    pub fn signed_distance(&self, point: DVec3, normal: DVec3, reach: f64) -> Option<f64> {
-        let facing = ClosestOptions { radius: reach, facing: Some(Facing { normal, min_cosine: 0.0 }) };
-        let foot =
-            self.closest(point, &facing).or_else(|| self.closest(point, &ClosestOptions::default()))?;
+    /// The distance of `point` to the surface, positive on the side of its normals.
+    ///
+    /// That to the closest point, unless its normal is opposite to `normal`: then a foot whose normal has an angle
+    /// below 90 degrees counts, so that a thin wall does not snap to its other side, if there is one at most ten times
+    /// as far away (else the point belongs to a small fold). `None` when the surface is empty or a coordinate is not
+    /// finite.
+    pub fn signed_distance(&self, point: DVec3, normal: DVec3) -> Option<f64> {
+        const FARTHER: f64 = 10.0;
+        let mut foot = self.closest(point, &ClosestOptions::default())?;
+        if foot.normal.dot(normal) <= 0.0 {
+            let facing = Some(Facing { normal, min_cosine: 0.0 });
+            let radius = FARTHER * foot.distance;
+            foot = self.closest(point, &ClosestOptions { radius, facing }).unwrap_or(foot);
+        }
         Some(foot.distance.copysign((point - foot.position).dot(foot.normal)))
     }
 }
