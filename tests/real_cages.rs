@@ -56,10 +56,15 @@ fn groove(
 ) -> Report {
     let lengths: BTreeMap<String, Length> =
         [("width".to_owned(), Length::OfEdge(0.3)), ("depth".to_owned(), depth)].into();
-    let options = Options { lengths, method, samples: if deviation { 4 } else { 0 }, ..Options::default() };
+    let options = Options { lengths, method, samples: if deviation { 3 } else { 0 }, ..Options::default() };
     let feature = Feature { rules, profile: Some(&GROOVE) };
     feature::apply(mesh, &ring.selection, &feature, &options, &Job::new()).expect("a ring takes a groove")
 }
+
+/// Chairs whose edges change their lengths slowly: the width holds to 3 % at all but 3 % of the places. On the others
+/// some edges are too short for 30 % of their control length on the limit surface; the report lists them.
+const EVEN_CHAIRS: [&str; 4] =
+    ["bs0_chair_cage.obj", "bs0_couch2.obj", "bsby_leaf_chair_cage.obj", "kl_mid-century-chair_cage.obj"];
 
 fn non_quads(mesh: &Mesh) -> usize {
     mesh.faces().filter(|&f| mesh.arity(f) != 4).count()
@@ -77,6 +82,7 @@ fn every_ring_takes_a_groove() {
     let (mut places, mut off) = (0, 0);
     for folder in ["upholstery", "product"] {
         for (name, mesh) in common::clean_cages(&data, folder) {
+            let (places_before, off_before) = (places, off);
             for ring in rings(&mesh) {
                 let mut result = mesh.clone();
                 let report = groove(&mut result, &ring, &rules, Length::OfEdge(0.1), Method::Solve, false);
@@ -93,6 +99,11 @@ fn every_ring_takes_a_groove() {
                 count += 1;
                 places += report.width.as_ref().map_or(0, |d| d.stations);
                 off += report.width.as_ref().map_or(0, |d| d.off.len());
+            }
+            let (off_here, places_here) = (off - off_before, places - places_before);
+            println!("{name}: width off by more than 3 % at {off_here} of {places_here} places");
+            if EVEN_CHAIRS.contains(&name.as_str()) {
+                assert!(33 * off_here < places_here, "{name}: {off_here} of {places_here} places are off");
             }
         }
     }
@@ -111,6 +122,7 @@ fn every_ring_takes_a_groove() {
         );
         assert!((quantile(&ratios, 0.5) - 1.0).abs() < 0.03);
     }
+    assert!(10 * off < places, "{off} of {places} places are off");
     assert!(count > 100, "only {count} rings");
 }
 
@@ -121,7 +133,7 @@ fn depth_zero_leaves_the_surface_where_it_was() {
     let (mut rms, mut max) = (Vec::new(), Vec::new());
     for folder in ["upholstery", "product"] {
         for (name, mesh) in common::clean_cages(&data, folder) {
-            for ring in rings(&mesh).into_iter().step_by(16) {
+            for ring in rings(&mesh) {
                 let deviation = |method| {
                     let mut result = mesh.clone();
                     let report = groove(&mut result, &ring, &rules, Length::Units(0.0), method, true);
