@@ -4,7 +4,9 @@ use super::args::{Apply, FitMethod};
 use super::error::Failure;
 use super::figure::{View, draw, limit_picture};
 use super::files;
+use super::output::{print, tell};
 use super::progress::watch;
+use std::io::Write;
 use std::process::ExitCode;
 use welt::feature::{Feature, Options, PROFILES, Profile, linear_rules};
 use welt::grammar::RuleSet;
@@ -27,9 +29,6 @@ pub fn run(arguments: &Apply) -> Result<ExitCode, Failure> {
     let mut mesh = files::import(&arguments.input, &arguments.import)?;
     let before = arguments.figure.as_ref().map(|_| mesh.clone());
     let selection = Selection::resolve(&mesh, &selectors)?;
-    for end in &selection.ends {
-        eprintln!("welt: {end}");
-    }
     let feature = Feature { rules: &rules, profile };
     let report = watch(|job| welt::feature::apply(&mut mesh, &selection, &feature, &options, job))?;
 
@@ -47,9 +46,9 @@ pub fn run(arguments: &Apply) -> Result<ExitCode, Failure> {
     let text = if arguments.json { files::json(&report)? + "\n" } else { report.to_string() };
     // Standard output may carry the mesh.
     if files::is_standard(&arguments.output) {
-        eprint!("{text}")
+        tell(text.trim_end());
     } else {
-        print!("{text}")
+        print(|out| out.write_all(text.as_bytes()))?;
     }
     Ok(ExitCode::SUCCESS)
 }

@@ -2,6 +2,7 @@
 
 use super::args::Import;
 use super::error::Failure;
+use super::output;
 use serde::Serialize;
 use std::io::{Read, Write};
 use std::path::Path;
@@ -32,7 +33,7 @@ pub fn import(path: &Path, import: &Import) -> Result<Mesh, Failure> {
 
 fn tell(path: &Path, report: &ImportReport) {
     for line in report.to_string().lines() {
-        eprintln!("{}: {line}", path.display());
+        output::tell(format_args!("{}: {line}", path.display()));
     }
 }
 
@@ -49,9 +50,7 @@ pub fn export(path: &Path, mesh: &Mesh) -> Result<(), Failure> {
     if !is_standard(path) {
         return Ok(io::export(path, mesh)?);
     }
-    let mut out = std::io::stdout().lock();
-    io::obj::write(&mesh.to_polygons(), &mut out)?;
-    Ok(out.flush()?)
+    output::print(|out| io::obj::write(&mesh.to_polygons(), out))
 }
 
 pub fn save_json(path: &Path, value: &impl Serialize) -> Result<(), Failure> {
