@@ -64,7 +64,7 @@ const SCENES: [Scene; 3] = [
 
 pub fn run(arguments: &Demo) -> Result<ExitCode, Failure> {
     let folder = &arguments.folder;
-    std::fs::create_dir_all(folder).map_err(|e| Failure(format!("{}: {e}", folder.display())))?;
+    std::fs::create_dir_all(folder).map_err(|e| Failure::error(format_args!("{}: {e}", folder.display())))?;
     let rules = feature::linear_rules()?;
     for scene in &SCENES {
         let start = Instant::now();

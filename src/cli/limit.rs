@@ -10,7 +10,7 @@ use welt::mesh::{Mesh, Polygons};
 use welt::subdivision::{Refinement, limit_points, limit_positions};
 
 pub fn run(arguments: &Limit) -> Result<ExitCode, Failure> {
-    files::check_output(&arguments.output)?;
+    files::check_mesh_output(&arguments.output)?;
     let mesh = files::import(&arguments.input, &arguments.import)?;
     let level = usize::from(arguments.level);
     if files::is_standard(&arguments.output) {

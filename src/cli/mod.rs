@@ -33,7 +33,7 @@ pub fn run() -> ExitCode {
         Ok(code) => code,
         Err(error) => {
             output::tell(format_args!("welt: {error}"));
-            ExitCode::FAILURE
+            ExitCode::from(error.code)
         }
     }
 }

@@ -11,7 +11,7 @@ pub fn print(
     let mut out = BufWriter::new(io::stdout().lock());
     match write(&mut out).and_then(|()| out.flush()) {
         Err(error) if error.kind() != ErrorKind::BrokenPipe => {
-            Err(Failure(format!("standard output: cannot be written: {error}")))
+            Err(Failure::error(format_args!("standard output: cannot be written: {error}")))
         }
         _ => Ok(()),
     }
