@@ -25,6 +25,20 @@ impl Folder {
         self.welt_fed(arguments, "")
     }
 
+    /// Runs with an output that nobody reads.
+    fn welt_unread(&self, arguments: &[&str]) -> Run {
+        let (reader, writer) = std::io::pipe().unwrap();
+        drop(reader);
+        let output = Command::new(env!("CARGO_BIN_EXE_welt"))
+            .args(arguments)
+            .current_dir(&self.0)
+            .stdin(Stdio::null())
+            .stdout(writer)
+            .output()
+            .unwrap();
+        Run::from(output)
+    }
+
     fn welt_fed(&self, arguments: &[&str], input: &str) -> Run {
         let mut child = Command::new(env!("CARGO_BIN_EXE_welt"))
             .args(arguments)
@@ -96,8 +110,10 @@ fn marks_that_do_not_fit_the_mesh() {
     let folder = Folder::new("marks");
     folder.groove(&["--mark", "edge:1,4"]).fails(1, &["no edge 1,4", "vertex 1 has edges to 0, 2, 5"]);
     folder.groove(&["--mark", "edge:1,99"]).fails(1, &["vertex 99 does not exist", "0 to 11"]);
-    folder.groove(&["--mark", "loop:1,2"]).fails(1, &["no selector 'loop'", "ring:A,B"]);
+    folder.groove(&["--mark", "loop:1,2"]).fails(2, &["no selector 'loop'", "ring:A,B"]);
     folder.groove(&["--mark", "select:absent.json"]).fails(1, &["absent.json"]);
+    #[cfg(target_os = "linux")]
+    folder.groove(&["--mark", "select:/dev/zero"]).fails(1, &["larger than 64 MiB"]);
     assert_eq!(folder.files(), ["sheet.obj"]);
 }
 
@@ -105,9 +121,11 @@ fn marks_that_do_not_fit_the_mesh() {
 fn a_ring_that_ends_at_a_triangle_is_applied_and_says_where() {
     let folder = Folder::new("triangle");
     // From the lower side upwards through the last column: its second face is the triangle, face 5.
-    let run = folder.groove(&["--mark", "ring:2,3", "--set", "width=0.2", "--set", "depth=0.05"]).succeeds();
-    assert!(run.err.contains("ends at edge 6,7: face 5 is a triangle"), "{}", run.err);
-    assert!(run.err.contains("ends at edge 3,2: the mesh has a border there"), "{}", run.err);
+    let sizes = ["--set", "width=0.2", "--set", "depth=0.05"];
+    let run = folder.groove(&[&["--mark", "ring:2,3", "--mark", "ring:6,7"], &sizes[..]].concat()).succeeds();
+    let told = run.out + &run.err;
+    assert_eq!(told.matches("ends at edge 6,7: face 5 is a triangle").count(), 1, "{told}");
+    assert_eq!(told.matches("ends at edge 3,2: the mesh has a border there").count(), 1, "{told}");
     assert!(folder.read("out.obj").lines().filter(|line| line.starts_with("v ")).count() > 12);
 }
 
@@ -117,12 +135,12 @@ fn parameters_that_a_feature_cannot_take() {
     let set = |setting| folder.groove(&["--mark", "ring:1,2", "--set", setting]);
     set("width=3").fails(1, &["edge ", "0.", "width"]);
     set("breadth=0.2").fails(1, &["no parameter 'breadth'", "width, depth"]);
-    set("width").fails(1, &["NAME=VALUE"]);
-    set("width=wide").fails(1, &["wide"]);
+    set("width").fails(2, &["NAME=VALUE"]);
+    set("width=wide").fails(2, &["wide"]);
     set("width=-1").fails(1, &["greater than 0"]);
     folder
         .welt(&["apply", "sheet.obj", "-o", "out.obj", "--feature", "grove", "--mark", "ring:1,2"])
-        .fails(1, &["no feature 'grove'", "groove, ridge"]);
+        .fails(2, &["no feature 'grove'", "groove, ridge"]);
     assert_eq!(folder.files(), ["sheet.obj"]);
 }
 
@@ -166,6 +184,13 @@ fn files_that_cannot_be_read_or_written() {
     apply("out.xyz").fails(1, &["out.xyz", ".obj or .ply"]);
     folder.welt(&["limit", "sheet.obj", "-o", "out.xyz"]).fails(1, &["out.xyz", ".obj or .ply"]);
     folder.welt(&["limit", "sheet.obj", "-o", "absent/out.obj"]).fails(1, &["absent", "create it first"]);
+    // No mesh without the report and the figure that were asked for.
+    for more in [["--report", "absent/r.json"], ["--figure", "absent/f.png"]] {
+        let run = folder.groove(&[&["--mark", "ring:1,2", "--set", "width=0.2"], &more[..]].concat());
+        run.fails(1, &["absent", "create it first"]);
+    }
+    folder.groove(&["--mark", "ring:1,2", "--report", "."]).fails(1, &[".: cannot be written"]);
+    folder.groove(&["--mark", "ring:1,2", "--figure", "f.jpg"]).fails(1, &["f.jpg", ".png"]);
     assert_eq!(folder.files(), ["sheet.obj"]);
 }
 
@@ -186,6 +211,8 @@ fn bad_usage_ends_with_2() {
     folder.welt(&["polish"]).fails(2, &["polish"]);
     folder.groove(&[]).fails(2, &["--mark"]);
     folder.welt(&["apply", "sheet.obj", "-o", "out.obj", "--mark", "ring:1,2"]).fails(2, &["--feature"]);
+    folder.groove(&["--mark", "ring:1,2", "--optimise", "best"]).fails(2, &["none, loop, solve"]);
+    folder.groove(&["--mark", "ring:1,2", "--report", "-"]).fails(2, &["--json"]);
     folder.welt(&["limit", "sheet.obj", "-o", "out.obj", "--level", "11"]).fails(2, &["11", "0..=10"]);
     folder.welt(&["deviation", "sheet.obj", "sheet.obj", "--samples", "0"]).fails(2, &["1..=64"]);
     assert_eq!(
@@ -227,6 +254,22 @@ fn a_dash_stands_for_standard_input_and_output() {
     folder.welt_fed(&["check", "-"], SHEET).succeeds();
     folder.welt_fed(&["check", "-"], "f 1 2 9\n").fails(1, &["standard input", "1"]);
     assert!(folder.welt(&["limit", "sheet.obj", "-o", "-"]).succeeds().out.contains("\nf "));
+}
+
+#[test]
+fn a_reader_may_stop_early() {
+    let folder = Folder::new("unread");
+    let commands: [&[&str]; 5] = [
+        &["check", "--json", "sheet.obj"],
+        &["rules", "list"],
+        &["rules", "list", "--json"],
+        &["deviation", "sheet.obj", "sheet.obj"],
+        &["limit", "sheet.obj", "-o", "-"],
+    ];
+    for arguments in commands {
+        let run = folder.welt_unread(arguments).succeeds();
+        assert_eq!(run.err, "", "{arguments:?}");
+    }
 }
 
 #[test]

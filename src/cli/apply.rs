@@ -4,7 +4,9 @@ use super::args::{Apply, FitMethod};
 use super::error::Failure;
 use super::figure::{View, draw, limit_picture};
 use super::files;
+use super::output::{print, tell};
 use super::progress::watch;
+use std::io::Write;
 use std::process::ExitCode;
 use welt::feature::{Feature, Options, PROFILES, Profile, linear_rules};
 use welt::grammar::RuleSet;
@@ -15,21 +17,22 @@ use welt::surface::SAMPLES;
 
 pub fn run(arguments: &Apply) -> Result<ExitCode, Failure> {
     let profile = arguments.feature.as_deref().map(named).transpose()?;
+    let options = options(arguments)?;
+    let selectors: Vec<Selector> = arguments
+        .marks
+        .iter()
+        .map(|text| Selector::parse(text))
+        .collect::<Result<_, _>>()
+        .map_err(Failure::usage)?;
+    check_outputs(arguments)?;
+
     let rules = match &arguments.rules {
         Some(path) => RuleSet::load(path)?,
         None => linear_rules()?,
     };
-    let options = options(arguments)?;
-    let selectors: Vec<Selector> =
-        arguments.marks.iter().map(|text| Selector::parse(text)).collect::<Result<_, _>>()?;
-
-    files::check_output(&arguments.output)?;
     let mut mesh = files::import(&arguments.input, &arguments.import)?;
     let before = arguments.figure.as_ref().map(|_| mesh.clone());
     let selection = Selection::resolve(&mesh, &selectors)?;
-    for end in &selection.ends {
-        eprintln!("welt: {end}");
-    }
     let feature = Feature { rules: &rules, profile };
     let report = watch(|job| welt::feature::apply(&mut mesh, &selection, &feature, &options, job))?;
 
@@ -47,17 +50,34 @@ pub fn run(arguments: &Apply) -> Result<ExitCode, Failure> {
     let text = if arguments.json { files::json(&report)? + "\n" } else { report.to_string() };
     // Standard output may carry the mesh.
     if files::is_standard(&arguments.output) {
-        eprint!("{text}")
+        tell(text.trim_end());
     } else {
-        print!("{text}")
+        print(|out| out.write_all(text.as_bytes()))?;
     }
     Ok(ExitCode::SUCCESS)
+}
+
+/// Refuses outputs that cannot be written, before any work is done.
+fn check_outputs(arguments: &Apply) -> Result<(), Failure> {
+    let (report, figure) = (arguments.report.as_deref(), arguments.figure.as_deref());
+    if report.is_some_and(files::is_standard) {
+        return Err(Failure::usage("--report writes a file; --json prints the report as JSON"));
+    }
+    if let Some(path) = figure.filter(|path| path.extension().is_none_or(|e| !e.eq_ignore_ascii_case("png")))
+    {
+        return Err(Failure::error(format_args!(
+            "{}: figures are PNG files; end the name with .png",
+            path.display()
+        )));
+    }
+    files::check_mesh_output(&arguments.output)?;
+    [report, figure].into_iter().flatten().try_for_each(files::check_output)
 }
 
 fn named(name: &str) -> Result<&'static Profile, Failure> {
     Profile::named(name).ok_or_else(|| {
         let known: Vec<&str> = PROFILES.iter().map(|profile| profile.name).collect();
-        Failure(format!("there is no feature '{name}'; there are {}", known.join(", ")))
+        Failure::usage(format_args!("there is no feature '{name}'; there are {}", known.join(", ")))
     })
 }
 
@@ -73,7 +93,7 @@ fn options(arguments: &Apply) -> Result<Options, Failure> {
         ..Options::default()
     };
     for setting in &arguments.set {
-        options.set(setting, arguments.rules.is_some())?;
+        options.set(setting, arguments.rules.is_some()).map_err(Failure::usage)?;
     }
     Ok(options)
 }

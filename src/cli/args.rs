@@ -78,7 +78,7 @@ pub struct Apply {
     /// Rule file to run on the marks instead of a feature
     #[arg(long, value_name = "FILE", conflicts_with = "feature")]
     pub rules: Option<PathBuf>,
-    /// Edges to mark: edge:A,B[@t], ring:A,B, path:A,B:C,D, cut:V,V,..., select:FILE (0-based vertices; #kind at the end)
+    /// Edges to mark: edge:A,B[@t], ring:A,B, path:A,B:C,D, cut:V,V,..., select:FILE (0-based vertices). #kind at the end is for rule files; features take marks of every kind
     #[arg(long = "mark", value_name = "SELECTOR", required = true)]
     pub marks: Vec<String>,
     /// Parameters: width=0.3 (model units) or width=30% (of the local edge)

@@ -3,16 +3,15 @@
 use super::args::Check;
 use super::error::Failure;
 use super::files;
+use super::output::print;
+use std::io::Write;
 use std::process::ExitCode;
 use welt::io::inspect;
 
 pub fn run(arguments: &Check) -> Result<ExitCode, Failure> {
     let source = files::read(&arguments.input, &arguments.import)?;
     let inspection = inspect(&source);
-    if arguments.json {
-        println!("{}", files::json(&inspection)?);
-    } else {
-        print!("{inspection}");
-    }
+    let text = if arguments.json { files::json(&inspection)? + "\n" } else { inspection.to_string() };
+    print(|out| out.write_all(text.as_bytes()))?;
     Ok(if inspection.defects.is_empty() { ExitCode::SUCCESS } else { ExitCode::FAILURE })
 }

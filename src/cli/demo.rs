@@ -4,7 +4,9 @@ use super::args::Demo;
 use super::error::Failure;
 use super::figure::{View, draw, limit_picture};
 use super::files;
+use super::output::print;
 use glam::DVec3;
+use std::io::Write;
 use std::process::ExitCode;
 use std::time::Instant;
 use welt::feature::{self, Feature, Options, Profile};
@@ -62,7 +64,7 @@ const SCENES: [Scene; 3] = [
 
 pub fn run(arguments: &Demo) -> Result<ExitCode, Failure> {
     let folder = &arguments.folder;
-    std::fs::create_dir_all(folder).map_err(|e| Failure(format!("{}: {e}", folder.display())))?;
+    std::fs::create_dir_all(folder).map_err(|e| Failure::error(format_args!("{}: {e}", folder.display())))?;
     let rules = feature::linear_rules()?;
     for scene in &SCENES {
         let start = Instant::now();
@@ -93,10 +95,11 @@ pub fn run(arguments: &Demo) -> Result<ExitCode, Failure> {
         io::save(&path("_limit.ply"), |out| io::ply::write(&limit.polygons, &ply, out))?;
         files::save_json(&path(".json"), &report)?;
         io::save(&path(".png"), |out| image.write_png(out))?;
-        println!("{} ({:.1} s): {}", path(".png").display(), start.elapsed().as_secs_f64(), scene.title);
-        for line in report.to_string().lines() {
-            println!("    {line}");
-        }
+        let seconds = start.elapsed().as_secs_f64();
+        print(|out| {
+            writeln!(out, "{} ({seconds:.1} s): {}", path(".png").display(), scene.title)?;
+            report.to_string().lines().try_for_each(|line| writeln!(out, "    {line}"))
+        })?;
     }
     Ok(ExitCode::SUCCESS)
 }

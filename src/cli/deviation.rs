@@ -3,8 +3,10 @@
 use super::args;
 use super::error::Failure;
 use super::files;
+use super::output::print;
 use super::progress::watch;
 use serde::Serialize;
+use std::io::{self, Write};
 use std::process::ExitCode;
 use welt::surface::{Comparison, Sampling, compare};
 
@@ -23,19 +25,25 @@ pub fn run(arguments: &args::Deviation) -> Result<ExitCode, Failure> {
     let sampling = Sampling { per_side: arguments.samples.into(), threads: arguments.threads };
     let comparison = watch(|job| compare(&first, &second, sampling, job))?;
     if arguments.json {
-        println!("{}", files::json(&Output { size, comparison })?);
-        return Ok(ExitCode::SUCCESS);
+        let text = files::json(&Output { size, comparison })?;
+        print(|out| writeln!(out, "{text}"))?;
+    } else {
+        print(|out| write_table(out, size, &comparison))?;
     }
+    Ok(ExitCode::SUCCESS)
+}
+
+fn write_table(out: &mut impl Write, size: f64, comparison: &Comparison) -> io::Result<()> {
     let Comparison { both, first_to_second, second_to_first } = comparison;
-    println!("size (bounding box diagonal of the first): {size}");
-    println!("{:<18}{:>14}{:>14}{:>14}{:>10}", "distance", "max", "rms", "95 %", "samples");
+    writeln!(out, "size (bounding box diagonal of the first): {size}")?;
+    writeln!(out, "{:<18}{:>14}{:>14}{:>14}{:>10}", "distance", "max", "rms", "95 %", "samples")?;
     let rows =
         [("both ways", both), ("first to second", first_to_second), ("second to first", second_to_first)];
     for (name, d) in rows {
-        println!("{name:<18}{:>14.6e}{:>14.6e}{:>14.6e}{:>10}", d.max, d.rms, d.p95, d.samples);
+        writeln!(out, "{name:<18}{:>14.6e}{:>14.6e}{:>14.6e}{:>10}", d.max, d.rms, d.p95, d.samples)?;
     }
     if size > 0.0 {
-        println!("relative to the size: max {:.3e}, rms {:.3e}", both.max / size, both.rms / size);
+        writeln!(out, "relative to the size: max {:.3e}, rms {:.3e}", both.max / size, both.rms / size)?;
     }
-    Ok(ExitCode::SUCCESS)
+    Ok(())
 }

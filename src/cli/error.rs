@@ -2,18 +2,35 @@
 
 use std::fmt;
 
-/// A message for the user. The library's errors already name the place and the remedy.
+/// What ends a command.
 #[derive(Debug)]
-pub struct Failure(pub String);
+pub struct Failure {
+    /// Exit code of the program: 1 on an error, 2 on bad usage.
+    pub code: u8,
+    /// For the user. The library's errors already name the place and the remedy.
+    message: String,
+}
+
+impl Failure {
+    /// Something about the mesh, a file or the system.
+    pub fn error(message: impl fmt::Display) -> Self {
+        Self { code: 1, message: message.to_string() }
+    }
+
+    /// Arguments that would be wrong on any mesh.
+    pub fn usage(message: impl fmt::Display) -> Self {
+        Self { code: 2, message: message.to_string() }
+    }
+}
 
 impl fmt::Display for Failure {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(&self.0)
+        f.write_str(&self.message)
     }
 }
 
 impl<E: std::error::Error> From<E> for Failure {
     fn from(error: E) -> Self {
-        Self(error.to_string())
+        Self::error(error)
     }
 }

@@ -2,8 +2,9 @@
 
 use super::args::Import;
 use super::error::Failure;
+use super::output;
 use serde::Serialize;
-use std::io::{Read, Write};
+use std::io::{ErrorKind, Read, Write};
 use std::path::Path;
 use welt::io::{self, ExportError, Format, ImportReport, Source};
 use welt::mesh::Mesh;
@@ -32,16 +33,34 @@ pub fn import(path: &Path, import: &Import) -> Result<Mesh, Failure> {
 
 fn tell(path: &Path, report: &ImportReport) {
     for line in report.to_string().lines() {
-        eprintln!("{}: {line}", path.display());
+        output::tell(format_args!("{}: {line}", path.display()));
     }
 }
 
-/// Refuses a mesh file whose format is not known, before any work is done.
-pub fn check_output(path: &Path) -> Result<(), Failure> {
-    if is_standard(path) || Format::of(path).is_some() {
+/// Refuses a mesh file whose format is not known or that has no place, before any work is done.
+pub fn check_mesh_output(path: &Path) -> Result<(), Failure> {
+    if is_standard(path) {
         return Ok(());
     }
-    Err(ExportError::UnknownFormat { file: path.display().to_string() }.into())
+    if Format::of(path).is_none() {
+        return Err(ExportError::UnknownFormat { file: path.display().to_string() }.into());
+    }
+    check_output(path)
+}
+
+/// Refuses a file that is a folder or whose folder is missing.
+pub fn check_output(path: &Path) -> Result<(), Failure> {
+    let file = path.display().to_string();
+    if path.is_dir() {
+        let source = ErrorKind::IsADirectory.into();
+        return Err(ExportError::Unwritable { file, source }.into());
+    }
+    match path.parent() {
+        Some(folder) if !folder.as_os_str().is_empty() && !folder.is_dir() => {
+            Err(ExportError::FolderMissing { file, folder: folder.display().to_string() }.into())
+        }
+        _ => Ok(()),
+    }
 }
 
 /// Writes the control mesh.
@@ -49,9 +68,7 @@ pub fn export(path: &Path, mesh: &Mesh) -> Result<(), Failure> {
     if !is_standard(path) {
         return Ok(io::export(path, mesh)?);
     }
-    let mut out = std::io::stdout().lock();
-    io::obj::write(&mesh.to_polygons(), &mut out)?;
-    Ok(out.flush()?)
+    output::print(|out| io::obj::write(&mesh.to_polygons(), out))
 }
 
 pub fn save_json(path: &Path, value: &impl Serialize) -> Result<(), Failure> {

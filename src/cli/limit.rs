@@ -3,20 +3,19 @@
 use super::args::Limit;
 use super::error::Failure;
 use super::files;
-use std::io::Write;
+use super::output::print;
 use std::process::ExitCode;
 use welt::io::{self, Format};
 use welt::mesh::{Mesh, Polygons};
 use welt::subdivision::{Refinement, limit_points, limit_positions};
 
 pub fn run(arguments: &Limit) -> Result<ExitCode, Failure> {
-    files::check_output(&arguments.output)?;
+    files::check_mesh_output(&arguments.output)?;
     let mesh = files::import(&arguments.input, &arguments.import)?;
     let level = usize::from(arguments.level);
     if files::is_standard(&arguments.output) {
-        let mut out = std::io::stdout().lock();
-        io::obj::write(&limit_mesh(&mesh, level)?, &mut out)?;
-        out.flush()?;
+        let polygons = limit_mesh(&mesh, level)?;
+        print(|out| io::obj::write(&polygons, out))?;
         return Ok(ExitCode::SUCCESS);
     }
     let polygons = limit_mesh(&mesh, level)?;

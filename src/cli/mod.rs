@@ -10,6 +10,7 @@ mod error;
 mod figure;
 mod files;
 mod limit;
+mod output;
 mod progress;
 mod rules;
 
@@ -31,8 +32,8 @@ pub fn run() -> ExitCode {
     match result {
         Ok(code) => code,
         Err(error) => {
-            eprintln!("welt: {error}");
-            ExitCode::FAILURE
+            output::tell(format_args!("welt: {error}"));
+            ExitCode::from(error.code)
         }
     }
 }

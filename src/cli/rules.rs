@@ -3,31 +3,35 @@
 use super::args::{Rules, RulesAction};
 use super::error::Failure;
 use super::files;
+use super::output::{print, tell};
 use serde::Serialize;
-use std::path::Path;
+use std::io::{self, Write};
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use welt::feature::PROFILES;
 use welt::grammar::{Parameter, RuleSet};
 
 pub fn run(arguments: &Rules) -> Result<ExitCode, Failure> {
     match &arguments.action {
-        RulesAction::Check { files } => Ok(check(files)),
+        RulesAction::Check { files } => check(files),
         RulesAction::List { file, json } => list(file.as_deref(), *json),
     }
 }
 
-fn check(files: &[std::path::PathBuf]) -> ExitCode {
+fn check(files: &[PathBuf]) -> Result<ExitCode, Failure> {
     let mut code = ExitCode::SUCCESS;
     for path in files {
         match RuleSet::load(path) {
-            Ok(rules) => println!("{}: {} rules, no errors", path.display(), rules.rules().len()),
+            Ok(rules) => {
+                print(|out| writeln!(out, "{}: {} rules, no errors", path.display(), rules.rules().len()))?
+            }
             Err(error) => {
-                eprintln!("{error}");
+                tell(error);
                 code = ExitCode::FAILURE;
             }
         }
     }
-    code
+    Ok(code)
 }
 
 /// What a rule file declares.
@@ -47,29 +51,36 @@ fn list(file: Option<&Path>, json: bool) -> Result<ExitCode, Failure> {
                 parameters: rules.parameters(),
                 rules: rules.rules().iter().map(|rule| rule.name.as_str()).collect(),
             };
-            if json { println!("{}", files::json(&listing)?) } else { print_rules(&listing) }
+            if json { print_json(&listing)? } else { print(|out| write_rules(out, &listing))? }
         }
-        None if json => println!("{}", files::json(&PROFILES)?),
-        None => print_features(),
+        None if json => print_json(&PROFILES)?,
+        None => print(write_features)?,
     }
     Ok(ExitCode::SUCCESS)
 }
 
-fn print_rules(listing: &Listing) {
-    println!("{}", listing.name);
-    for p in listing.parameters {
-        println!("    {} = {} {}, {} to {}: {}", p.name, p.default, p.unit, p.low, p.high, p.help);
-    }
-    for rule in &listing.rules {
-        println!("    rule {rule}");
-    }
+fn print_json(value: &impl Serialize) -> Result<(), Failure> {
+    let text = files::json(value)?;
+    print(|out| writeln!(out, "{text}"))
 }
 
-fn print_features() {
+fn write_rules(out: &mut impl Write, listing: &Listing) -> io::Result<()> {
+    writeln!(out, "{}", listing.name)?;
+    for p in listing.parameters {
+        writeln!(out, "    {} = {} {}, {} to {}: {}", p.name, p.default, p.unit, p.low, p.high, p.help)?;
+    }
+    for rule in &listing.rules {
+        writeln!(out, "    rule {rule}")?;
+    }
+    Ok(())
+}
+
+fn write_features(out: &mut impl Write) -> io::Result<()> {
     for profile in PROFILES {
-        println!("{}: {}", profile.name, profile.help);
+        writeln!(out, "{}: {}", profile.name, profile.help)?;
         for p in profile.parameters {
-            println!("    {} = {}: {}", p.name, p.default, p.help);
+            writeln!(out, "    {} = {}: {}", p.name, p.default, p.help)?;
         }
     }
+    Ok(())
 }

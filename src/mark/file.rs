@@ -4,7 +4,11 @@ use super::resolve::half_edge;
 use super::{Mark, MarkError};
 use crate::mesh::Mesh;
 use serde::Deserialize;
+use std::io::Read;
 use std::path::Path;
+
+/// Size that a mark file can have, in bytes.
+const MAX_BYTES: u64 = 64 << 20;
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -28,8 +32,13 @@ fn middle() -> f64 {
 /// Reads the marks of `path`; entries without a kind get `kind`.
 pub(super) fn read(mesh: &Mesh, path: &Path, kind: &str) -> Result<Vec<Mark>, MarkError> {
     let error = |problem: String| MarkError::File { path: path.display().to_string(), problem };
-    let text = std::fs::read_to_string(path).map_err(|e| error(e.to_string()))?;
-    let file: File = serde_json::from_str(&text).map_err(|e| {
+    let mut text = Vec::new();
+    let read = std::fs::File::open(path).and_then(|file| file.take(MAX_BYTES + 1).read_to_end(&mut text));
+    let length = read.map_err(|e| error(e.to_string()))?;
+    if length as u64 > MAX_BYTES {
+        return Err(error(format!("the file is larger than {} MiB; is it a mark file?", MAX_BYTES >> 20)));
+    }
+    let file: File = serde_json::from_slice(&text).map_err(|e| {
         error(format!(
             "{e}; a mark file is {{\"marks\": [{{\"edge\": [0, 1], \"t\": 0.5, \"kind\": \"red\"}}]}}"
         ))

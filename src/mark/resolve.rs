@@ -7,7 +7,7 @@ use rustc_hash::{FxHashMap, FxHashSet};
 use serde::Serialize;
 
 /// Why a ring did not go on.
-#[derive(Clone, Copy, PartialEq, Eq, Debug, Serialize)]
+#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum StopReason {
     /// The mesh ends there.
@@ -19,7 +19,7 @@ pub enum StopReason {
 }
 
 /// Where a ring stopped before it closed.
-#[derive(Clone, Copy, PartialEq, Eq, Debug, Serialize)]
+#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug, Serialize)]
 pub struct StripEnd {
     /// The last marked edge.
     pub edge: (u32, u32),
@@ -49,7 +49,7 @@ impl std::fmt::Display for StripEnd {
 pub struct Selection {
     /// One mark per crossed edge, in the order of the selectors, without repetition.
     pub marks: Vec<Mark>,
-    /// Where rings stopped before they closed.
+    /// Where rings stopped before they closed, without repetition.
     pub ends: Vec<StripEnd>,
 }
 
@@ -121,6 +121,7 @@ impl Selection {
     pub fn resolve(mesh: &Mesh, selectors: &[Selector]) -> Result<Self, MarkError> {
         let mut selection = Self::default();
         let mut at: FxHashMap<u32, usize> = FxHashMap::default();
+        let mut ends: FxHashSet<StripEnd> = FxHashSet::default();
         for selector in selectors {
             let mut found = Self::default();
             selector.collect(mesh, &mut found)?;
@@ -133,7 +134,7 @@ impl Selection {
                     Some(&index) => same_mark(mesh, &selection.marks[index], &mark)?,
                 }
             }
-            selection.ends.extend(found.ends);
+            selection.ends.extend(found.ends.into_iter().filter(|&end| ends.insert(end)));
         }
         Ok(selection)
     }

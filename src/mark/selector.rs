@@ -40,7 +40,8 @@ pub enum Shape {
 pub struct Selector {
     /// Which edges.
     pub shape: Shape,
-    /// The kind, `"red"` unless `#name` says otherwise.
+    /// The kind, `"red"` unless `#name` says otherwise. Rule files tell marks apart by it; features take marks of
+    /// every kind.
     pub kind: String,
 }
 
