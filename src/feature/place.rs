@@ -31,7 +31,7 @@ impl WidthError {
     fn message(&self) -> String {
         let Self { edge: (a, b), length, asked, low, high } = self;
         let [length, asked, low, high] = [length, asked, low, high].map(|x| significant(*x));
-        if !(self.length > 0.0) {
+        if self.length <= 0.0 {
             return format!("edge {a},{b} has no length; merge its vertices (--weld 0) or do not mark it");
         }
         if self.high < self.low {
