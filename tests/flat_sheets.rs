@@ -1,4 +1,4 @@
-//! Grooves on flat sheets, where the right answer is known: JUNCTIONS figures and closed forms.
+//! Grooves on flat sheets, where the right answer is known: figures of a prototype (docs/linear-features.md) and closed forms.
 //!
 //! The limit surface is looked at through five levels of refinement with every vertex moved to its limit, so that
 //! nothing here depends on how the library measures.
@@ -85,7 +85,7 @@ fn valley(
 }
 
 const DEPTH: f64 = 0.1;
-/// The band whose control rims are at 0.15 (the half width of JUNCTIONS.md): W = 1.1934 w + 0.06285.
+/// The band whose control rims are at 0.15 (the half width of the measured figures): W = 1.1934 w + 0.06285.
 const WIDTH: f64 = 1.1934 * 0.15 + 0.062_85;
 
 /// Width at half depth and depth of a groove along `v`, measured in the middle of the sheet across the band.
@@ -152,7 +152,7 @@ fn straight_valley() {
     apply(&mut mesh, &["ring:27,28".into()], &GROOVE, &[("width", WIDTH), ("depth", DEPTH)]);
     let points = limit(&mesh);
     let (low, high) = valley(&points, 0.1, 6.9, |p| p.y, |_| true);
-    // JUNCTIONS.md, section 2: 1.00.
+    // docs/linear-features.md, section 2: 1.00.
     assert!((low / DEPTH - 1.0).abs() < 1e-3 && (high / DEPTH - 1.0).abs() < 1e-3, "{low} {high}");
     // Section 2, reach: exactly flat beyond w + (5g + G)/6 from the centre line.
     let reach = 0.15 + (5.0 * 0.35 + 1.0) / 6.0;
@@ -167,7 +167,7 @@ fn corner_valley() {
     marks.extend(crossed_sideways(3, 4..=7));
     let report = apply(&mut mesh, &marks, &GROOVE, &[("width", WIDTH), ("depth", DEPTH)]);
     assert!(report.leftovers.is_empty() && report.non_quads.is_empty(), "{report}");
-    // 3 per mark and 3 on the diagonal (JUNCTIONS.md: 91 vertices on the 7 x 7 sheet).
+    // 3 per mark and 3 on the diagonal (docs/linear-features.md: 91 vertices on the 7 x 7 sheet).
     assert_eq!(report.after.vertices, 91);
     let points = limit(&mesh);
     // The bend is at the lower right of the middle face: the valley comes from below and leaves to the right.
@@ -175,7 +175,7 @@ fn corner_valley() {
     assert!(low / DEPTH > 0.995 && high / DEPTH < 1.005, "{low} {high}");
     let (low, high) = valley(&points, 3.8, 6.5, |p| p.x, |p| p.y > 3.0);
     assert!(low / DEPTH > 0.995 && high / DEPTH < 1.005, "{low} {high}");
-    // Along the bend, measured across the diagonal: JUNCTIONS.md says 1.00.
+    // Along the bend, measured across the diagonal: the prototype had 1.00.
     let (low, high) =
         valley(&points, -0.25, 0.25, |p| (p.x - 3.5) + (p.y - 3.5), |p| (p.x - p.y - 0.0).abs() < 0.9);
     assert!(low / DEPTH > 0.99 && high / DEPTH < 1.01, "{low} {high}");
@@ -191,7 +191,7 @@ fn crossing_valley() {
         &[("width", WIDTH), ("depth", DEPTH)],
     );
     assert!(report.leftovers.is_empty() && report.non_quads.is_empty(), "{report}");
-    // JUNCTIONS.md, section 2: 121 vertices, valley 1.00 to 1.00 with the centre at half height (1.33 without).
+    // docs/linear-features.md, section 2: 121 vertices, valley 1.00 to 1.00 with the centre at half height (1.33 without).
     assert_eq!(report.after.vertices, 121);
     let points = limit(&mesh);
     for coordinate in [0, 1] {
@@ -207,13 +207,13 @@ fn dead_end_valley() {
     let marks = crossed_upwards(3, 0..=3);
     let report = apply(&mut mesh, &marks, &GROOVE, &[("width", WIDTH), ("depth", DEPTH)]);
     assert!(report.leftovers.is_empty(), "{report}");
-    // DE3W: five inner vertices, one triangle (JUNCTIONS.md: 81 vertices; 64 + 3 x 4 + 5).
+    // DE3W: five inner vertices, one triangle (docs/linear-features.md: 81 vertices; 64 + 3 x 4 + 5).
     assert_eq!(report.after.vertices, 81);
     assert_eq!(report.non_quads.iter().map(|n| n.1).collect::<Vec<_>>(), [3]);
     let points = limit(&mesh);
     let middle = |p: DVec3| (p.x - 3.5).abs() < 0.02;
     let depth_at = |y: f64| depth_where(&points, |p| middle(p) && (p.y - 3.0 - y).abs() < 0.016) / DEPTH;
-    // JUNCTIONS.md, section 2, for the tip at y = 0.5: 98 % until 0.12, half depth at 0.907 y - 0.096 = 0.36.
+    // docs/linear-features.md, section 2, for the tip at y = 0.5: 98 % until 0.12, half depth at 0.907 y - 0.096 = 0.36.
     assert!(depth_at(0.05) > 0.97, "{}", depth_at(0.05));
     assert!(depth_at(0.32) > 0.5 && depth_at(0.40) < 0.5, "{} {}", depth_at(0.32), depth_at(0.40));
     assert!(depth_at(0.9) < 0.02, "{}", depth_at(0.9));

@@ -81,7 +81,7 @@ fn boundary_vertices_stay_on_the_boundary_curve() {
     }
 }
 
-/// The limit matrix of a cube is singular (SYSTEMS.md, A.4): its alternating mode has no limit at all.
+/// The limit matrix of a cube is singular (docs/linear-features.md, section 3): its alternating mode has no limit at all.
 #[test]
 fn a_cube_is_fitted_although_its_system_is_singular() {
     let mesh = cube();

@@ -2,7 +2,7 @@
 //!
 //! One sparse system over the green vertices: the limit point of each is to lie at its target height along its
 //! normal. In straight bands this gives the closed form 3/2 of the depth, in crossings the centre at half height
-//! (JUNCTIONS.md, sections 3 and 5).
+//! (docs/linear-features.md, sections 1 and 2).
 
 use super::profile::Profile;
 use crate::mesh::{Domain, Mesh, Node, Value, VertexId};

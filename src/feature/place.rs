@@ -48,7 +48,7 @@ impl WidthError {
 /// The direction in which a feature crosses the marked edge: along the sides of the faces beside it.
 ///
 /// In each face the direction is between those of the two edges that leave the marked edge's ends, so that in a quad
-/// crossed straight it points to the opposite mark (JUNCTIONS.md, section 5 takes the angle from it).
+/// crossed straight it points to the opposite mark (docs/linear-features.md, section 1, takes the angle from it).
 pub(super) fn band_direction(mesh: &Mesh, h: HalfEdgeId, t: f64) -> DVec3 {
     let into_face = |h: HalfEdgeId, t: f64| {
         if mesh.face(h).is_boundary() {

@@ -86,10 +86,10 @@ pub const RIDGE: Profile = Profile {
 pub const ALL: [&Profile; 2] = [&GROOVE, &RIDGE];
 
 /// Limit depth over control depth of the middle of three lines: a cubic B-spline's centre weight.
-/// (JUNCTIONS.md, section 5: D = 2h/3.)
+/// (docs/linear-features.md, section 1: D = 2h/3.)
 const CENTRE_WEIGHT: f64 = 2.0 / 3.0;
 /// Full width at half depth of a middle line between two rims at distance w with gaps g beyond the rims is
-/// `RIM w + GAP g`, for a uniform cubic B-spline cross-section (JUNCTIONS.md, section 5).
+/// `RIM w + GAP g`, for a uniform cubic B-spline cross-section (docs/linear-features.md, section 1).
 pub(super) const RIM: f64 = 1.3191;
 /// See [`RIM`].
 pub(super) const GAP: f64 = 0.1257;

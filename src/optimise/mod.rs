@@ -83,7 +83,7 @@ pub struct FitReport {
 
 /// Steps of [`Method::Loop`] at most. The paper needs fewer than 20; the slowest mode of a flat grid has ratio 8/9.
 const LOOP_STEPS: u32 = 100;
-/// Outer steps of [`Method::Solve`] (JUNCTIONS.md, section 4: the residual is at rounding level after two).
+/// Outer steps of [`Method::Solve`] (docs/linear-features.md, section 3: the residual is at rounding level after two).
 const SOLVE_STEPS: u32 = 3;
 /// Tolerance on the limit points, relative to `reach`.
 const TOLERANCE: f64 = 1e-7;
@@ -100,7 +100,7 @@ pub struct Target {
     pub surface: LimitSurface,
     /// Its boundary curves.
     pub boundary: BoundaryCurves,
-    /// How far a limit point may be from it, in model units: twice the mean edge (SYSTEMS.md, A.4 step 3).
+    /// How far a limit point may be from it, in model units: twice the mean edge (a foot further away belongs to another part of the shape).
     pub reach: f64,
 }
 
