@@ -293,6 +293,38 @@ fn limit_at_level_0_keeps_vertices_and_faces() {
 }
 
 #[test]
+fn the_boundary_rule_decides_about_corners() {
+    let folder = Folder::new("boundary");
+    let mut grid = String::new();
+    for i in 0..16 {
+        grid += &format!("v {} {} 0\n", i % 4, i / 4);
+    }
+    for i in (1..12).filter(|i| i % 4 != 0) {
+        grid += &format!("f {} {} {} {}\n", i, i + 1, i + 5, i + 4);
+    }
+    fs::write(folder.0.join("grid.obj"), &grid).unwrap();
+    fs::write(folder.0.join("cornered.obj"), grid + "t interpolateboundary 1/0/0 1\n").unwrap();
+    let corner = |file, more: &[&str]| -> Vec<f64> {
+        let run = folder.welt(&[&["limit", file, "-o", "-", "--level", "0"], more].concat()).succeeds();
+        let line = run.out.lines().find(|line| line.starts_with("v ")).unwrap().to_owned();
+        line.split_whitespace().skip(1).map(|word| word.parse().unwrap()).collect()
+    };
+    let stays = [0.0, 0.0, 0.0];
+    assert_eq!(corner("grid.obj", &["--boundary", "corner"]), stays);
+    assert_eq!(corner("cornered.obj", &[]), stays);
+    // The cubic B-spline of the border has ((1, 0) + 4 (0, 0) + (0, 1)) / 6 there.
+    for rounded in [corner("grid.obj", &[]), corner("cornered.obj", &["--boundary", "edge"])] {
+        assert!(
+            (rounded[0] - 1.0 / 6.0).abs() < 1e-12 && (rounded[1] - 1.0 / 6.0).abs() < 1e-12,
+            "{rounded:?}"
+        );
+    }
+    folder
+        .welt(&["limit", "grid.obj", "-o", "out.obj", "--boundary", "round"])
+        .fails(2, &["none, edge, corner"]);
+}
+
+#[test]
 fn two_runs_write_the_same_bytes() {
     let folder = Folder::new("twice");
     let run = |out: &str| {

@@ -3,6 +3,7 @@
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use std::path::PathBuf;
 use welt::io::{ImportOptions, Limits};
+use welt::mesh::BoundaryRule;
 
 #[derive(Parser)]
 #[command(name = "welt", version, about = "Features on Catmull-Clark control meshes", max_term_width = 100)]
@@ -36,6 +37,30 @@ pub struct Import {
     /// Merge vertices that are no further apart than EPS (model units)
     #[arg(long, value_name = "EPS")]
     pub weld: Option<f64>,
+    /// What becomes of the boundary; what the file says, or edge, without it
+    #[arg(long, value_enum, value_name = "RULE")]
+    pub boundary: Option<Boundary>,
+}
+
+/// The names of boundary rules.
+#[derive(Clone, Copy, ValueEnum)]
+pub enum Boundary {
+    /// Faces at the boundary are no part of the surface
+    None,
+    /// The boundary is a smooth curve
+    Edge,
+    /// As edge, but vertices of a single face stay where they are
+    Corner,
+}
+
+impl From<Boundary> for BoundaryRule {
+    fn from(boundary: Boundary) -> Self {
+        match boundary {
+            Boundary::None => Self::None,
+            Boundary::Edge => Self::EdgeOnly,
+            Boundary::Corner => Self::EdgeAndCorner,
+        }
+    }
 }
 
 impl Import {

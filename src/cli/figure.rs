@@ -1,12 +1,12 @@
 //! The figure of a feature: control mesh, limit surface, deviation map.
 
 use super::error::Failure;
-use super::limit::{limit_mesh, refined_control};
+use super::limit::limit_mesh_with_normals;
 use glam::DVec3;
 use welt::feature::{Report, significant};
 use welt::mesh::{Mesh, Polygons};
 use welt::picture::{Camera, Content, EdgeKind, Figure, Finish, Image, Panel, Shape};
-use welt::subdivision::{Refinement, limit_points};
+use welt::subdivision::Refinement;
 use welt::surface::LimitSurface;
 
 /// A limit mesh with what is drawn or written about it.
@@ -28,11 +28,8 @@ fn drawing_level(faces: usize) -> usize {
 /// The limit surface of `after`, compared with that of `before` where `report` says it can have changed.
 pub fn limit_picture(before: &Mesh, after: &Mesh, report: &Report) -> Result<LimitPicture, Failure> {
     let level = drawing_level(after.face_bound());
-    let control = Mesh::from_polygons(&refined_control(after, level)?)?;
-    let polygons = limit_mesh(after, level)?;
-    let normals: Vec<DVec3> =
-        limit_points(&control).iter().map(|point| point.normal().unwrap_or_default()).collect();
     let refinement = Refinement::new(after, level)?;
+    let (polygons, normals) = limit_mesh_with_normals(&refinement, after, level)?;
     let mut near = vec![false; polygons.positions.len()];
     for face in 0..polygons.face_sizes.len() as u32 {
         let ancestor = (1..=level)

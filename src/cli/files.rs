@@ -16,12 +16,17 @@ pub fn is_standard(path: &Path) -> bool {
 /// The polygons of a file, before the mesh is built.
 pub fn read(path: &Path, import: &Import) -> Result<Source, Failure> {
     let options = import.options();
-    if !is_standard(path) {
-        return Ok(io::read(path, &options)?);
+    let mut source = if is_standard(path) {
+        let mut bytes = Vec::new();
+        std::io::stdin().lock().read_to_end(&mut bytes)?;
+        io::read_bytes("standard input", Format::Obj, &bytes, &options)?
+    } else {
+        io::read(path, &options)?
+    };
+    if let Some(boundary) = import.boundary {
+        source.polygons.subdivision.boundary = boundary.into();
     }
-    let mut bytes = Vec::new();
-    std::io::stdin().lock().read_to_end(&mut bytes)?;
-    Ok(io::read_bytes("standard input", Format::Obj, &bytes, &options)?)
+    Ok(source)
 }
 
 /// The mesh of a file. What was left out or repaired is told on standard error.

@@ -4,6 +4,7 @@ use super::args::Limit;
 use super::error::Failure;
 use super::files;
 use super::output::print;
+use glam::DVec3;
 use std::process::ExitCode;
 use welt::io::{self, Format};
 use welt::mesh::{Mesh, Polygons};
@@ -18,37 +19,45 @@ pub fn run(arguments: &Limit) -> Result<ExitCode, Failure> {
         print(|out| io::obj::write(&polygons, out))?;
         return Ok(ExitCode::SUCCESS);
     }
-    let polygons = limit_mesh(&mesh, level)?;
-    match Format::of(&arguments.output) {
-        Some(Format::Ply) => {
-            let refined = Mesh::from_polygons(&polygons)?;
-            // Normals of the refined control mesh at its own vertices are those of the surface itself.
-            let control = Mesh::from_polygons(&refined_control(&mesh, level)?)?;
-            let normals: Vec<_> =
-                limit_points(&control).iter().map(|point| point.normal().unwrap_or_default()).collect();
-            let options = io::ply::Options { normals: Some(&normals), ..Default::default() };
-            io::save(&arguments.output, |out| io::ply::write(&refined.to_polygons(), &options, out))?;
-        }
-        _ => io::save(&arguments.output, |out| io::obj::write(&polygons, out))?,
+    if Format::of(&arguments.output) == Some(Format::Ply) {
+        let refinement = Refinement::new(&mesh, level)?;
+        let (polygons, normals) = limit_mesh_with_normals(&refinement, &mesh, level)?;
+        let options = io::ply::Options { normals: Some(&normals), ..Default::default() };
+        io::save(&arguments.output, |out| io::ply::write(&polygons, &options, out))?;
+    } else {
+        let polygons = limit_mesh(&mesh, level)?;
+        io::save(&arguments.output, |out| io::obj::write(&polygons, out))?;
     }
     Ok(ExitCode::SUCCESS)
 }
 
-/// The control mesh refined `level` times.
-pub fn refined_control(mesh: &Mesh, level: usize) -> Result<Polygons, Failure> {
-    let refinement = Refinement::new(mesh, level)?;
-    let positions = refinement.positions(level, &refinement.control_positions(mesh));
-    Ok(refinement.polygons(level, positions))
-}
-
 /// The control mesh refined `level` times, every vertex moved to its limit.
-pub fn limit_mesh(mesh: &Mesh, level: usize) -> Result<Polygons, Failure> {
+fn limit_mesh(mesh: &Mesh, level: usize) -> Result<Polygons, Failure> {
     if level == 0 {
-        let mut polygons = mesh.to_polygons();
-        polygons.positions = limit_positions(mesh);
-        return Ok(polygons);
+        // Groups, materials and texture coordinates stay.
+        return Ok(Polygons { positions: limit_positions(mesh), ..mesh.to_polygons() });
     }
-    let control = refined_control(mesh, level)?;
+    let control = refined_control(&Refinement::new(mesh, level)?, mesh, level);
     let positions = limit_positions(&Mesh::from_polygons(&control)?);
     Ok(Polygons { positions, ..control })
+}
+
+/// Level `level` of `mesh`, every vertex moved to its limit, and the normal of the surface at each vertex; zero where
+/// there is none.
+pub fn limit_mesh_with_normals(
+    refinement: &Refinement,
+    mesh: &Mesh,
+    level: usize,
+) -> Result<(Polygons, Vec<DVec3>), Failure> {
+    let control = refined_control(refinement, mesh, level);
+    let points = limit_points(&Mesh::from_polygons(&control)?);
+    let normals = points.iter().map(|point| point.normal().unwrap_or_default()).collect();
+    let positions = points.iter().map(|point| point.position).collect();
+    Ok((Polygons { positions, ..control }, normals))
+}
+
+/// Level `level` of `mesh`: another control mesh of the same surface.
+fn refined_control(refinement: &Refinement, mesh: &Mesh, level: usize) -> Polygons {
+    let positions = refinement.positions(level, &refinement.control_positions(mesh));
+    refinement.polygons(level, positions)
 }
