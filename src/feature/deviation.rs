@@ -1,7 +1,7 @@
 //! How far the result is from the surface as it was: measured over the surface, both ways.
 
+use super::aftermath::affected_faces;
 use super::displace::Green;
-use super::linear::affected_faces;
 use super::report::{Difference, Warning};
 use crate::job::{Cancelled, Job};
 use crate::mesh::{FaceId, Mesh};

@@ -1,101 +1,22 @@
 //! The pipeline of a linear feature, and of any rule set on marked edges.
 
+use super::aftermath::{affected_faces, feature_edges, settle, without_texcoords};
+use super::clock::Clock;
 use super::displace::{Green, LineVertex, displace, greens, line_vertices};
 use super::measure::{Reached, Station, stations};
 use super::place::{WidthError, crossing_sine, cuts};
-use super::report::{Counts, Dimension, Leftover, Report, Warning};
-use super::{Length, Profile, deviation};
-use crate::grammar::{self, RuleSet};
-use crate::job::{Cancelled, Job};
+use super::report::{Counts, Dimension, Report, Warning};
+use super::{Feature, FeatureError, Length, Options, Profile, deviation};
+use crate::grammar;
+use crate::job::Job;
 use crate::mark::{self, Selection};
-use crate::mesh::{Domain, FaceId, HalfEdgeId, Mesh, Node, Value, VertexId};
-use crate::optimise::{self, FitReport, Method, Target};
+use crate::mesh::{FaceId, Mesh, Node, Value, VertexId};
+use crate::optimise::{self, FitReport, Target};
 use crate::subdivision::limit_normal;
 use crate::surface::Sampling;
 use glam::DVec3;
 use rustc_hash::FxHashMap;
 use std::collections::BTreeMap;
-use std::time::Instant;
-
-/// What to apply.
-#[derive(Clone, Copy, Debug)]
-pub struct Feature<'a> {
-    /// The rules that rewrite the mesh.
-    pub rules: &'a RuleSet,
-    /// The cross-section; without one the rules run on the marks as they are and nothing is displaced.
-    pub profile: Option<&'a Profile>,
-}
-
-/// How to apply it.
-#[derive(Clone, Debug)]
-pub struct Options {
-    /// Parameters of the profile that differ from their defaults (`width`, `depth`, `height`).
-    pub lengths: BTreeMap<String, Length>,
-    /// Parameters of the rule set that differ from their defaults.
-    pub numbers: BTreeMap<String, f64>,
-    /// How to fit the changed mesh to the surface as it was.
-    pub method: Method,
-    /// Samples per side of a face for measuring deviations, 8 as a rule; 0 measures none. Measuring also looks for
-    /// walls thinner than the feature is deep. It costs more than the feature itself.
-    pub samples: usize,
-    /// Threads for measuring deviations, 0 for all; the result does not depend on it.
-    pub threads: usize,
-}
-
-impl Default for Options {
-    fn default() -> Self {
-        Self {
-            lengths: BTreeMap::new(),
-            numbers: BTreeMap::new(),
-            method: Method::Solve,
-            samples: 0,
-            threads: 1,
-        }
-    }
-}
-
-/// Why a feature was not applied. The mesh is as it was.
-#[derive(Clone, Debug, thiserror::Error)]
-pub enum FeatureError {
-    /// Nothing is marked.
-    #[error("no edge is marked; name at least one edge the feature is to cross")]
-    NoMarks,
-    /// A mark of another mesh, or of this one before it was changed.
-    #[error("mark {mark} is on an edge that the mesh does not have; select the edges anew on this mesh")]
-    NoSuchEdge {
-        /// The mark, counted from 0 in the order of the selection.
-        mark: usize,
-    },
-    /// A parameter that the feature does not have.
-    #[error("{feature} has no parameter '{name}'; it has {}", known.join(", "))]
-    UnknownParameter {
-        /// The feature or rule set.
-        feature: String,
-        /// The name given.
-        name: String,
-        /// The names there are.
-        known: Vec<String>,
-    },
-    /// A parameter out of its range.
-    #[error("{name} is {value}; {remedy}")]
-    BadParameter {
-        /// Its name.
-        name: String,
-        /// The value given.
-        value: String,
-        /// What it should be.
-        remedy: &'static str,
-    },
-    /// A width that an edge cannot take.
-    #[error(transparent)]
-    Width(#[from] WidthError),
-    /// The rules failed.
-    #[error(transparent)]
-    Rules(#[from] grammar::RunError),
-    /// The caller cancelled.
-    #[error(transparent)]
-    Cancelled(#[from] Cancelled),
-}
 
 /// Rings of faces around the marked ones whose limit surface is frozen for the fit: the active vertices lie on the
 /// faces around the changed ones.
@@ -496,7 +417,7 @@ impl<'a> Run<'a> {
         job: &Job,
     ) -> Result<Report, FeatureError> {
         job.step("report", 0.8)?;
-        let leftovers = self.settle(mesh);
+        let leftovers = settle(mesh, self.feature.profile.is_some());
         let mut displaced = None;
         let mut fitted = None;
         if let Some(reference) = reference {
@@ -595,107 +516,5 @@ impl<'a> Run<'a> {
             worst_low: extreme(f64::min),
             worst_high: extreme(f64::max),
         })
-    }
-
-    /// Turns what the rules left over into the attribute `unresolved`, and takes the working attributes away.
-    fn settle(&self, mesh: &mut Mesh) -> Vec<Leftover> {
-        let waiting = if self.feature.profile.is_some() { "places" } else { "color" };
-        let waiting = mesh.intern(waiting);
-        let mut half_edges: Vec<HalfEdgeId> =
-            mesh.nodes_with_attribute(Domain::HalfEdge, waiting).into_iter().map(HalfEdgeId).collect();
-        half_edges.retain(|&h| mesh.has_half_edge(h) && !mesh.face(h).is_boundary());
-        let unresolved = mesh.intern("unresolved");
-        let kind = mesh.intern(if self.feature.profile.is_some() { "kind" } else { "color" });
-        let mut marks: BTreeMap<FaceId, usize> = BTreeMap::new();
-        for &h in &half_edges {
-            *marks.entry(mesh.face(h)).or_default() += 1;
-            let kind = mesh.attribute(Node::HalfEdge(h), kind).cloned();
-            let kind = kind.unwrap_or_else(|| Value::text(mark::DEFAULT_KIND));
-            mesh.set_attribute(Node::HalfEdge(h), unresolved, Some(kind));
-        }
-        for (domain, names) in [
-            (Domain::HalfEdge, &["cuts", "mark", "places", "kind", "color", "t"][..]),
-            (Domain::Vertex, &["mark", "line", "cross", "hold"][..]),
-        ] {
-            for name in names {
-                let name = mesh.intern(name);
-                for id in mesh.nodes_with_attribute(domain, name) {
-                    mesh.set_attribute(Node::new(domain, id), name, None);
-                }
-            }
-        }
-        let span = mesh.intern("span");
-        for &h in &half_edges {
-            for to in mesh.links(Node::HalfEdge(h), span).to_vec() {
-                mesh.set_link(Node::HalfEdge(h), span, to, false);
-            }
-        }
-        marks
-            .into_iter()
-            .map(|(face, marks)| Leftover {
-                face: face.0,
-                vertices: mesh.face_vertices(face).map(|v| v.0).collect(),
-                marks,
-            })
-            .collect()
-    }
-}
-
-/// How many of the changed faces have a corner without a texture coordinate, on a mesh that has some.
-fn without_texcoords(mesh: &Mesh, changed: &[FaceId]) -> usize {
-    if !mesh.has_texcoords() {
-        return 0;
-    }
-    let bare = |f: &&FaceId| mesh.face_half_edges(**f).any(|h| mesh.texcoord(h).is_none());
-    changed.iter().filter(bare).count()
-}
-
-/// Faces whose limit surface can have changed: the surface of a face depends on the vertices of the faces around it,
-/// and the vertices of the faces around the changed ones may have moved.
-pub(super) fn affected_faces(mesh: &Mesh, changed: &[FaceId]) -> Vec<FaceId> {
-    let active = mesh.grow_faces(changed);
-    let moved = mesh.grow_faces(&active);
-    mesh.grow_faces(&moved)
-}
-
-/// Edges between vertices of one line, other than the pieces of marked edges.
-fn feature_edges(mesh: &Mesh, lines: &[LineVertex], count: usize) -> Vec<(u32, u32)> {
-    let of = |v: VertexId| lines.binary_search_by_key(&v, |entry| entry.vertex).ok().map(|i| &lines[i]);
-    let mut edges = Vec::new();
-    for a in lines {
-        for b in mesh.outgoing(a.vertex).filter_map(|h| of(mesh.target(h))) {
-            let pieces_of_one_mark = a.mark.is_some() && a.mark == b.mark;
-            if a.vertex < b.vertex && a.shares_line(b, count) && !pieces_of_one_mark {
-                edges.push((a.vertex.0, b.vertex.0));
-            }
-        }
-    }
-    edges
-}
-
-/// Time per stage, summed over passes.
-struct Clock {
-    last: Instant,
-    laps: Vec<(&'static str, f64)>,
-}
-
-impl Clock {
-    fn start() -> Self {
-        Self { last: Instant::now(), laps: Vec::new() }
-    }
-
-    fn lap(&mut self, stage: &'static str) {
-        let now = Instant::now();
-        let milliseconds = now.duration_since(self.last).as_secs_f64() * 1e3;
-        self.last = now;
-        match self.laps.iter_mut().find(|lap| lap.0 == stage) {
-            Some(lap) => lap.1 += milliseconds,
-            None => self.laps.push((stage, milliseconds)),
-        }
-    }
-
-    fn laps(&mut self) -> Vec<(&'static str, f64)> {
-        self.lap("report");
-        std::mem::take(&mut self.laps)
     }
 }

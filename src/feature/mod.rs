@@ -3,6 +3,8 @@
 //! A linear feature ([`apply`]) is one pipeline: place the lines of the profile on the marked edges, rewrite by
 //! rules, fit to the frozen surface, displace, measure; once more with corrected width and depth; report.
 
+mod aftermath;
+mod clock;
 mod deviation;
 mod displace;
 mod length;
@@ -11,14 +13,16 @@ mod measure;
 mod place;
 mod profile;
 mod report;
+mod request;
 mod settings;
 
 pub use displace::raise;
 pub use length::{Length, significant};
-pub use linear::{Feature, FeatureError, Options, apply};
+pub use linear::apply;
 pub use place::WidthError;
 pub use profile::{ALL as PROFILES, GROOVE, Line, Parameter, Profile, RIDGE};
 pub use report::{Counts, Difference, Dimension, Leftover, Report, Warning};
+pub use request::{Feature, FeatureError, Options};
 pub use settings::SettingError;
 
 use crate::grammar::{RuleSet, RulesError};

@@ -1,7 +1,7 @@
 //! Settings as text, `width=30%`, the same for the program and the C ABI.
 
 use super::Length;
-use super::linear::Options;
+use super::Options;
 
 /// A setting that cannot be read.
 #[derive(Clone, PartialEq, Eq, Debug, thiserror::Error)]

@@ -1,0 +1,82 @@
+//! What a run of rules leaves behind: leftovers, working attributes, and which faces it touched.
+
+use super::displace::LineVertex;
+use super::report::Leftover;
+use crate::mark;
+use crate::mesh::{Domain, FaceId, HalfEdgeId, Mesh, Node, Value, VertexId};
+use std::collections::BTreeMap;
+
+/// Turns what the rules left over into the attribute `unresolved`, and takes the working attributes away.
+pub(super) fn settle(mesh: &mut Mesh, has_profile: bool) -> Vec<Leftover> {
+    let waiting = if has_profile { "places" } else { "color" };
+    let waiting = mesh.intern(waiting);
+    let mut half_edges: Vec<HalfEdgeId> =
+        mesh.nodes_with_attribute(Domain::HalfEdge, waiting).into_iter().map(HalfEdgeId).collect();
+    half_edges.retain(|&h| mesh.has_half_edge(h) && !mesh.face(h).is_boundary());
+    let unresolved = mesh.intern("unresolved");
+    let kind = mesh.intern(if has_profile { "kind" } else { "color" });
+    let mut marks: BTreeMap<FaceId, usize> = BTreeMap::new();
+    for &h in &half_edges {
+        *marks.entry(mesh.face(h)).or_default() += 1;
+        let kind = mesh.attribute(Node::HalfEdge(h), kind).cloned();
+        let kind = kind.unwrap_or_else(|| Value::text(mark::DEFAULT_KIND));
+        mesh.set_attribute(Node::HalfEdge(h), unresolved, Some(kind));
+    }
+    for (domain, names) in [
+        (Domain::HalfEdge, &["cuts", "mark", "places", "kind", "color", "t"][..]),
+        (Domain::Vertex, &["mark", "line", "cross", "hold"][..]),
+    ] {
+        for name in names {
+            let name = mesh.intern(name);
+            for id in mesh.nodes_with_attribute(domain, name) {
+                mesh.set_attribute(Node::new(domain, id), name, None);
+            }
+        }
+    }
+    let span = mesh.intern("span");
+    for &h in &half_edges {
+        for to in mesh.links(Node::HalfEdge(h), span).to_vec() {
+            mesh.set_link(Node::HalfEdge(h), span, to, false);
+        }
+    }
+    marks
+        .into_iter()
+        .map(|(face, marks)| Leftover {
+            face: face.0,
+            vertices: mesh.face_vertices(face).map(|v| v.0).collect(),
+            marks,
+        })
+        .collect()
+}
+
+/// How many of the changed faces have a corner without a texture coordinate, on a mesh that has some.
+pub(super) fn without_texcoords(mesh: &Mesh, changed: &[FaceId]) -> usize {
+    if !mesh.has_texcoords() {
+        return 0;
+    }
+    let bare = |f: &&FaceId| mesh.face_half_edges(**f).any(|h| mesh.texcoord(h).is_none());
+    changed.iter().filter(bare).count()
+}
+
+/// Faces whose limit surface can have changed: the surface of a face depends on the vertices of the faces around it,
+/// and the vertices of the faces around the changed ones may have moved.
+pub(super) fn affected_faces(mesh: &Mesh, changed: &[FaceId]) -> Vec<FaceId> {
+    let active = mesh.grow_faces(changed);
+    let moved = mesh.grow_faces(&active);
+    mesh.grow_faces(&moved)
+}
+
+/// Edges between vertices of one line, other than the pieces of marked edges.
+pub(super) fn feature_edges(mesh: &Mesh, lines: &[LineVertex], count: usize) -> Vec<(u32, u32)> {
+    let of = |v: VertexId| lines.binary_search_by_key(&v, |entry| entry.vertex).ok().map(|i| &lines[i]);
+    let mut edges = Vec::new();
+    for a in lines {
+        for b in mesh.outgoing(a.vertex).filter_map(|h| of(mesh.target(h))) {
+            let pieces_of_one_mark = a.mark.is_some() && a.mark == b.mark;
+            if a.vertex < b.vertex && a.shares_line(b, count) && !pieces_of_one_mark {
+                edges.push((a.vertex.0, b.vertex.0));
+            }
+        }
+    }
+    edges
+}
