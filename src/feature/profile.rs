@@ -36,7 +36,8 @@ pub struct Profile {
     /// Name of the parameter that `Line::height` is a multiple of.
     #[serde(skip)]
     pub extent: &'static str,
-    /// The lines, from one rim to the other.
+    /// The lines, from one rim to the other, the same from either side: marks may run in either direction along a
+    /// feature.
     #[serde(skip)]
     pub lines: &'static [Line],
 }
