@@ -215,6 +215,7 @@ fn dead_end_valley() {
     let depth_at = |y: f64| depth_where(&points, |p| middle(p) && (p.y - 3.0 - y).abs() < 0.016) / DEPTH;
     // docs/linear-features.md, section 2, for the tip at y = 0.5: 98 % until 0.12, half depth at 0.907 y - 0.096 = 0.36.
     assert!(depth_at(0.05) > 0.97, "{}", depth_at(0.05));
+    assert!(depth_at(0.12) > 0.98, "{}", depth_at(0.12));
     assert!(depth_at(0.32) > 0.5 && depth_at(0.40) < 0.5, "{} {}", depth_at(0.32), depth_at(0.40));
     assert!(depth_at(0.9) < 0.02, "{}", depth_at(0.9));
 }
