@@ -8,7 +8,7 @@ use super::output::{print, tell};
 use super::progress::watch;
 use std::io::Write;
 use std::process::ExitCode;
-use welt::feature::{Feature, Options, PROFILES, Profile, linear_rules};
+use welt::feature::{Options, ProfileError, Request, RequestError};
 use welt::grammar::RuleSet;
 use welt::io;
 use welt::mark::{Selection, Selector};
@@ -16,8 +16,8 @@ use welt::optimise::Method;
 use welt::surface::SAMPLES;
 
 pub fn run(arguments: &Apply) -> Result<ExitCode, Failure> {
-    let profile = arguments.feature.as_deref().map(named).transpose()?;
-    let options = options(arguments)?;
+    let request = request(arguments)?;
+    let options = options(arguments);
     let selectors: Vec<Selector> = arguments
         .marks
         .iter()
@@ -26,15 +26,10 @@ pub fn run(arguments: &Apply) -> Result<ExitCode, Failure> {
         .map_err(Failure::usage)?;
     check_outputs(arguments)?;
 
-    let rules = match &arguments.rules {
-        Some(path) => RuleSet::load(path)?,
-        None => linear_rules()?,
-    };
     let mut mesh = files::import(&arguments.input, &arguments.import)?;
     let before = arguments.figure.as_ref().map(|_| mesh.clone());
     let selection = Selection::resolve(&mesh, &selectors)?;
-    let feature = Feature { rules: &rules, profile };
-    let report = watch(|job| welt::feature::apply(&mut mesh, &selection, &feature, &options, job))?;
+    let report = watch(|job| welt::feature::apply(&mut mesh, &selection, &request, &options, job))?;
 
     files::export(&arguments.output, &mesh)?;
     if let Some(path) = &arguments.report {
@@ -74,15 +69,19 @@ fn check_outputs(arguments: &Apply) -> Result<(), Failure> {
     [report, figure].into_iter().flatten().try_for_each(files::check_output)
 }
 
-fn named(name: &str) -> Result<&'static Profile, Failure> {
-    Profile::named(name).ok_or_else(|| {
-        let known: Vec<&str> = PROFILES.iter().map(|profile| profile.name).collect();
-        Failure::usage(format_args!("there is no feature '{name}'; there are {}", known.join(", ")))
+fn request(arguments: &Apply) -> Result<Request, Failure> {
+    let request = match &arguments.rules {
+        Some(path) => Request::rules(RuleSet::load(path)?, &arguments.set),
+        None => Request::features(&arguments.features, &arguments.set),
+    };
+    request.map_err(|error| match error {
+        RequestError::Profile(ProfileError::File { .. }) | RequestError::Rules(_) => Failure::error(error),
+        error => Failure::usage(error),
     })
 }
 
-fn options(arguments: &Apply) -> Result<Options, Failure> {
-    let mut options = Options {
+fn options(arguments: &Apply) -> Options {
+    Options {
         method: match arguments.optimise {
             FitMethod::None => Method::None,
             FitMethod::Loop => Method::Loop,
@@ -90,10 +89,5 @@ fn options(arguments: &Apply) -> Result<Options, Failure> {
         },
         samples: if arguments.no_deviation { 0 } else { SAMPLES },
         threads: arguments.threads,
-        ..Options::default()
-    };
-    for setting in &arguments.set {
-        options.set(setting, arguments.rules.is_some()).map_err(Failure::usage)?;
     }
-    Ok(options)
 }
