@@ -33,6 +33,7 @@ pub(super) fn enclosed(
             .iter()
             .filter(|(i, _)| members.contains(i))
             .map(|&(_, h)| (mesh.source(h).0, mesh.target(h).0))
+            .map(|(a, b)| (a.min(b), a.max(b)))
             .collect();
         if !ends.is_empty() {
             ends.sort_unstable();
