@@ -218,10 +218,7 @@ fn marks_name_their_feature() {
     assert_eq!(kinds, ["groove", "wide", "ridge"]);
 
     let error = try_apply(&mut sheet(), &["ring:44,45#blue"], &["groove"], &[]).expect_err("no such kind");
-    assert_eq!(
-        error.to_string(),
-        "edge 4,5 is marked #blue, and no feature has that name; there are groove"
-    );
+    assert_eq!(error.to_string(), "edge 4,5 is marked #blue, and no feature has that name; there are groove");
 }
 
 #[test]
