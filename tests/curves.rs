@@ -128,7 +128,7 @@ fn a_circle_closes() {
     let points: Vec<DVec3> = (0..24).map(|i| at(std::f64::consts::TAU * f64::from(i) / 24.0)).collect();
     let report = groove(&mut mesh, &[text("spline", &points, true)]);
     let (points, least_z) = limit(&mesh);
-    let found = valley(&points, at, [0.0, 6.28]);
+    let found = valley(&points, at, [0.0, std::f64::consts::TAU]);
     println!("circle: {found:?}, {least_z}, {} vertices\n{report}", mesh.vertex_bound());
     assert!(report.leftovers.is_empty());
     assert!(least_z > 0.0, "a fold");

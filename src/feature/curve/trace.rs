@@ -59,7 +59,8 @@ pub(in super::super) fn trace(
     for h in vertices.iter().flat_map(|&v| mesh.outgoing(v)) {
         let (Some(a), Some(b)) = (beside.get(&mesh.source(h)), beside.get(&mesh.target(h))) else { continue };
         // From the right of the curve to its left: all marks count in the same direction.
-        if !(a.distance < 0.0 && b.distance > 0.0 && a.inside && b.inside) || !seen.insert(h.edge()) {
+        let crossed = a.distance < 0.0 && b.distance > 0.0 && a.inside && b.inside;
+        if !(crossed && seen.insert(h.edge())) {
             continue;
         }
         let breadth = b.distance - a.distance;

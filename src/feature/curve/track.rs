@@ -92,12 +92,14 @@ impl Track {
         let lefts = (0..count as isize)
             .map(|i| normals[i as usize].cross(at(i + 1) - at(i - 1)).normalize_or_zero())
             .collect();
-        let mut lengths = Vec::with_capacity(count);
         let mut length = 0.0;
-        for i in 0..count {
-            lengths.push(length);
-            length += points[i].distance(at(i as isize + 1));
-        }
+        let lengths = (0..count as isize)
+            .map(|i| {
+                let so_far = length;
+                length += at(i).distance(at(i + 1));
+                so_far
+            })
+            .collect();
         Self { points, normals, lefts, lengths, length, closed }
     }
 
