@@ -129,7 +129,6 @@ impl Run<'_> {
     /// The real faces beside the marked edges.
     fn crossed_faces(&self, mesh: &Mesh) -> Vec<FaceId> {
         let mut faces: Vec<FaceId> = self
-            .selection
             .marks
             .iter()
             .flat_map(|mark| [mark.half_edge, mark.half_edge.mate()])
