@@ -108,7 +108,7 @@ void many_readers() {
             welt_selection* selection = nullptr;
             welt_surface* surface = nullptr;
             bool fine = welt_selection_create(mesh.get(), "ring:20,21", SIZE_MAX, &selection, nullptr) == WELT_OK;
-            fine = welt_surface_create(mesh.get(), nullptr, 0, &surface, nullptr) == WELT_OK && fine;
+            fine = welt_surface_create(mesh.get(), nullptr, 0, nullptr, &surface, nullptr) == WELT_OK && fine;
             wrong += !fine || welt_selection_count(selection) != side + 1;
             welt_surface_free(surface);
             welt_selection_free(selection);

@@ -76,7 +76,7 @@ std::vector<Jet> evaluate(Mesh const& mesh, std::vector<std::uint32_t> const& fa
     std::vector<Jet> jets(faces.size());
     welt_error* error = nullptr;
     welt_surface* made = nullptr;
-    require(welt_surface_create(mesh.get(), faces.data(), faces.size(), &made, &error), error);
+    require(welt_surface_create(mesh.get(), faces.data(), faces.size(), nullptr, &made, &error), error);
     Surface const surface(made);
     require(welt_surface_evaluate(made, faces.data(), corners.data(), parameters.data(), faces.size(),
                                &jets.data()->position.x, 18 * jets.size(), &error),
