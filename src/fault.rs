@@ -21,10 +21,11 @@ thread_local! {
     static ARMED: std::cell::Cell<Option<(Fault, u64)>> = const { std::cell::Cell::new(None) };
 }
 
-/// Arms a fault for the `n`-th place from now, 1-based, in place of what was armed; `None` disarms.
+/// Arms a fault for the `n`-th place from now, 1-based, in place of what was armed; `None` disarms. Whether the one that
+/// was armed before has not struck.
 #[cfg(feature = "fault-injection")]
-pub fn arm(fault: Option<Fault>, n: u64) {
-    ARMED.set(fault.map(|fault| (fault, n)));
+pub fn arm(fault: Option<Fault>, n: u64) -> bool {
+    ARMED.replace(fault.map(|fault| (fault, n))).is_some()
 }
 
 /// Whether `fault` strikes here.

@@ -80,7 +80,12 @@ fn every_section_of_the_abi_is_in_the_header() {
     let header = std::fs::read_to_string(header_path()).unwrap();
     let declared = functions_of(&header);
     for entry in std::fs::read_dir(root().join("src/ffi")).unwrap() {
-        let source = std::fs::read_to_string(entry.unwrap().path()).unwrap();
+        let path = entry.unwrap().path();
+        if path.ends_with("fault.rs") {
+            // Only in builds for tests.
+            continue;
+        }
+        let source = std::fs::read_to_string(path).unwrap();
         for line in
             source.lines().filter(|line| line.starts_with("pub ") && line.contains("extern \"C\" fn "))
         {

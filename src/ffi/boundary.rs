@@ -59,7 +59,7 @@ fn internal(panic: Box<dyn Any + Send>) -> Failure {
     Failure::new(WELT_ERROR_INTERNAL, format!("internal error: {text}; please report it"))
 }
 
-/// The content of a handle that can be changed. A change that panics leaves it poisoned.
+/// The content of a handle that can be changed. A change that panics or finds a defect of the library leaves it poisoned.
 pub(super) struct Guarded<T> {
     content: T,
     poisoned: bool,
@@ -89,7 +89,7 @@ impl<T> Guarded<T> {
         fault::point("change begun");
         let result = work(&mut self.content);
         fault::point("change done");
-        self.poisoned = false;
+        self.poisoned = matches!(&result, Err(failure) if failure.code == WELT_ERROR_INTERNAL);
         result
     }
 }

@@ -121,7 +121,7 @@ unsafe fn apply(
     let request = request(&settings)?;
     let idle = Job::new();
     let job = job.map_or(&idle, |job| &job.job);
-    let done = mesh.transact(|mesh| {
+    let done = mesh.change(|mesh| {
         let selection = selection.on(mesh)?;
         let done = feature::apply(mesh, selection, &request, &options, job)?;
         report.is_some().then(|| WeltReport::new(&done)).transpose()
