@@ -126,7 +126,8 @@ void call(std::int32_t (*function)(P...), A... arguments) {
 template <class T, void (*Free)(T*)>
 class Handle {
 public:
-    explicit Handle(T* handle) : handle_(handle) {}
+    // Takes over a handle of welt.h; NULL makes an empty one.
+    explicit Handle(T* handle = nullptr) : handle_(handle) {}
     // The handle for functions of welt.h; it stays with this object.
     T* get() const { return handle_.get(); }
 

@@ -6,6 +6,7 @@
 
 #include <cmath>
 #include <cstdio>
+#include <thread>
 #include <type_traits>
 
 namespace {
@@ -96,7 +97,7 @@ void options_and_files() {
     welt::ImportOptions options;
     that(options.struct_size == sizeof(welt_import_options) && options.weld == -1.0, "defaults");
     options.weld = 0.0;
-    welt::Report report(nullptr);
+    welt::Report report;
     std::string const soup = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\nvn 0 0 1\nf 1 2 3\nf 4 6 5\n";
     welt::Mesh const mesh = welt::Mesh::import_memory(soup, WELT_FORMAT_OBJ, "soup.obj", options, &report);
     that(mesh.edge_count() == 5, "two triangles are welded");
@@ -172,15 +173,18 @@ void jobs() {
     welt::Mesh mesh = make_sheet();
     welt::Selection const marks = mesh.select("ring:2,3");
     double last = -1.0;
+    std::thread::id thread;
     std::vector<std::string> stages;
     welt::Job watched([&](double progress, std::string_view stage) {
         last = progress;
+        thread = std::this_thread::get_id();
         stages.emplace_back(stage);
     });
     // An observer stays with its job.
     welt::Job const job = std::move(watched);
     mesh.refine(2, &job);
     that(last == 1.0 && stages.size() == 4 && stages[0] == "refine", "progress");
+    that(thread == std::this_thread::get_id(), "the observer is called by the thread that made the call");
     that(job.progress() == 1.0 && job.stage() == "refine", "what the job says");
 
     std::size_t const before = mesh.vertex_count();

@@ -1,7 +1,7 @@
 // A feature that another thread cancels at some moment is applied whole or not at all, and several threads may read one mesh.
 
 #include "check.hpp"
-#include "welt.hpp"
+#include "library.hpp"
 
 #include <atomic>
 #include <chrono>
@@ -117,10 +117,26 @@ void many_readers() {
     check::that(wrong == 0, "four threads read one mesh");
 }
 
+void different_handles_at_once() {
+    auto const work = [] {
+        Mesh mesh = make_mesh(sheet());
+        welt::Selection const marks = mesh.select("ring:20,21");
+        check::that(groove(mesh.get(), marks.get(), nullptr) == WELT_OK, "a feature beside others");
+        return content(mesh.get());
+    };
+    Content const alone = work();
+    std::atomic<int> different{0};
+    std::vector<std::thread> workers;
+    for (int i = 0; i < 4; ++i) workers.emplace_back([&] { different += !(work() == alone); });
+    for (std::thread& worker : workers) worker.join();
+    check::that(different == 0, "four threads change a mesh each");
+}
+
 }  // namespace
 
 int main() {
     cancelled_at_any_moment();
+    different_handles_at_once();
     many_readers();
     return check::result();
 }
