@@ -461,11 +461,11 @@ public:
         return Selection(detail::make<welt_selection>(welt_selection_create, get(), selectors.data(), selectors.size()));
     }
     void mark(Selection const& selection) { detail::call(welt_mesh_mark, get(), selection.get()); }
-    Report apply(Selection const& selection, std::string_view feature, std::string_view settings = "",
+    Report apply(Selection const& selection, std::string_view features, std::string_view settings = "",
                  FeatureOptions const& options = {}, Job const* job = nullptr) {
         return Job::run(job, [&](welt_job const* watched) {
-            return Report(detail::make<welt_report>(welt_feature_apply, get(), selection.get(), feature.data(),
-                                                    feature.size(), settings.data(), settings.size(), &options, watched));
+            return Report(detail::make<welt_report>(welt_feature_apply, get(), selection.get(), features.data(),
+                                                    features.size(), settings.data(), settings.size(), &options, watched));
         });
     }
     Report apply(Selection const& selection, Rules const& rules, std::string_view settings = "",

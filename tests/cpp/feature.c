@@ -215,7 +215,7 @@ static void mistakes(void) {
     status = groove(mesh, selection, "width=nan", NULL, NULL, &error);
     refused(status, WELT_ERROR_ARGUMENT, error, "width", mesh);
     status = groove(mesh, selection, "width=-0.2", NULL, NULL, &error);
-    refused(status, WELT_ERROR_ARGUMENT, error, "greater than 0", mesh);
+    refused(status, WELT_ERROR_ARGUMENT, error, "than 0", mesh);
     status = groove(mesh, selection, "breadth=0.2", NULL, NULL, &error);
     refused(status, WELT_ERROR_ARGUMENT, error, "width, depth", mesh);
     status = groove(mesh, selection, "width=5", NULL, NULL, &error);
