@@ -299,6 +299,14 @@ WELT_API
 uint32_t welt_version(void);
 
 /*
+ 1 where a program runs with this library that was compiled with a header of this WELT_VERSION and WELT_ABI_VERSION: the
+ binary interface is the same, and the library is not older than the header. Else 0. Since: 0.1.
+ */
+WELT_API
+int32_t welt_is_compatible(uint32_t version,
+                           uint32_t abi_version);
+
+/*
  The version of the library that runs as text, such as "0.1.0". Owned by the library, valid for ever. Since: 0.1.
  */
 WELT_API
@@ -373,6 +381,22 @@ WELT_API uint32_t welt_error_place_column(const welt_error *error, size_t index)
  Since: 0.1.
  */
 WELT_API int32_t welt_job_create(welt_job **job, welt_error **error);
+
+/*
+ Has a function called with the progress at every step of a call that works with the job.
+
+ job: must not be NULL; no call may work with it meanwhile.
+ observer: is called by the thread that made the call, with the progress in [0, 1]. It may use the functions of this job,
+ welt_job_cancel above all, and handles that the call does not change. It must come back: no exception, no longjmp.
+ context: is passed to the function as it is; may be NULL.
+
+ Since: 0.1.
+ */
+WELT_API
+int32_t welt_job_observe(welt_job *job,
+                         void (*observer)(void *context, double progress),
+                         void *context,
+                         welt_error **error);
 
 /*
  Frees a job. NULL is allowed. Since: 0.1.
@@ -736,6 +760,13 @@ size_t welt_refinement_face_count(const welt_refinement *refinement,
                                   uint32_t level);
 
 /*
+ Sum of the numbers of vertices of all faces of a level; 0 where refinement is NULL or has no such level. Since: 0.1.
+ */
+WELT_API
+size_t welt_refinement_face_vertex_count(const welt_refinement *refinement,
+                                         uint32_t level);
+
+/*
  The positions of the vertices of a level as a view.
 
  refinement: must not be NULL.
@@ -756,8 +787,8 @@ int32_t welt_refinement_positions(const welt_refinement *refinement,
 
  refinement: must not be NULL.
  level: 0 to the depth.
- vertices: receives the address of the vertices of all faces one after the other, counter-clockwise, 0-based. They belong
- to the refinement and are valid until it is freed. On level 1 and above there are 4 per face: a face covers one
+ vertices: receives the address of the vertices of all faces one after the other, counter-clockwise, 0-based:
+ welt_refinement_face_vertex_count(refinement, level) numbers that belong to the refinement and are valid until it is freed. On level 1 and above there are 4 per face: a face covers one
  corner of a face of the level before, and has the point of that corner, of the edge that leaves it, of the face, and
  of the edge that arrives. On level 0 the numbers of vertices are those that welt_mesh_faces gives.
 
@@ -1102,14 +1133,16 @@ int32_t welt_mesh_deviation(const welt_mesh *first,
  mesh: must not be NULL.
  faces: the faces whose surface is frozen, 0-based; NULL for all. Cost follows their number.
  count: number of faces; 0 where faces is NULL.
+ job: may be NULL.
  surface: receives the handle; free it with welt_surface_free.
 
- Fails with WELT_ERROR_ARGUMENT where a face does not exist. Since: 0.1.
+ Fails with WELT_ERROR_ARGUMENT where a face does not exist, and with WELT_ERROR_CANCELLED. Since: 0.1.
  */
 WELT_API
 int32_t welt_surface_create(const welt_mesh *mesh,
                             const uint32_t *faces,
                             size_t count,
+                            const welt_job *job,
                             welt_surface **surface,
                             welt_error **error);
 

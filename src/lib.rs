@@ -10,6 +10,7 @@
 //!
 //! [`picture`] and [`ffi`] (the C ABI) stand on top; nothing imports them.
 
+mod fault;
 pub mod feature;
 pub mod ffi;
 pub mod gml;

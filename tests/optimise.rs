@@ -44,7 +44,7 @@ fn limit_points_come_back_to_the_surface() {
     let mesh = model("leaf_chair.obj");
     let faces: Vec<FaceId> = mesh.grow_faces(&mesh.grow_faces(&[FaceId(200), FaceId(300), FaceId(500)]));
     let everything = mesh.grow_faces(&mesh.grow_faces(&faces));
-    let target = Target::freeze(&mesh, &everything);
+    let target = Target::freeze(&mesh, &everything, &Job::new()).unwrap();
     let active = active_set(&mesh, &faces);
     for method in [Method::Solve, Method::Loop] {
         let mut pushed = mesh.clone();
@@ -69,7 +69,7 @@ fn boundary_vertices_stay_on_the_boundary_curve() {
     let rim: Vec<VertexId> = mesh.vertices().filter(|&v| mesh.is_boundary_vertex(v)).collect();
     assert!(!rim.is_empty());
     let faces: Vec<FaceId> = mesh.faces().collect();
-    let target = Target::freeze(&mesh, &faces);
+    let target = Target::freeze(&mesh, &faces, &Job::new()).unwrap();
     let mut pushed = mesh.clone();
     push(&mut pushed, &rim, 0.02 * target.reach);
     let all: Vec<VertexId> = pushed.vertices().collect();
@@ -86,7 +86,7 @@ fn boundary_vertices_stay_on_the_boundary_curve() {
 fn a_cube_is_fitted_although_its_system_is_singular() {
     let mesh = cube();
     let faces: Vec<FaceId> = mesh.faces().collect();
-    let target = Target::freeze(&mesh, &faces);
+    let target = Target::freeze(&mesh, &faces, &Job::new()).unwrap();
     let all: Vec<VertexId> = mesh.vertices().collect();
     let mut pushed = mesh.clone();
     for v in &all {
@@ -101,7 +101,7 @@ fn a_cube_is_fitted_although_its_system_is_singular() {
 fn nothing_to_do_and_cancelling() {
     let mesh = cube();
     let faces: Vec<FaceId> = mesh.faces().collect();
-    let target = Target::freeze(&mesh, &faces);
+    let target = Target::freeze(&mesh, &faces, &Job::new()).unwrap();
     let mut same = mesh.clone();
     let report = fit(&mut same, &[], &target, Method::Solve, &Job::new()).expect("not cancelled");
     assert_eq!((report.stop, report.steps), (Stop::Nothing, 0));

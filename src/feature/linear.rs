@@ -83,7 +83,7 @@ impl Run<'_> {
         let deepest = self.deepest();
         let reference = measured.then(|| deviation::Reference::freeze(mesh, &crossed, footprint, sampling));
         let walls = measured.then(|| deviation::Walls::around(mesh, &crossed, deepest));
-        let mut target = Target::freeze(mesh, &region);
+        let mut target = Target::freeze(mesh, &region, job)?;
         self.clock.lap("freeze");
 
         let mut corrections = 0;
@@ -98,7 +98,7 @@ impl Run<'_> {
                 // Rules reached further than the frozen surface: freeze more and start again.
                 mesh.rollback(checkpoint);
                 region = mesh.grow_faces(&wider);
-                target = Target::freeze(mesh, &region);
+                target = Target::freeze(mesh, &region, job)?;
                 continue;
             }
             let misses = self.misses(&pass);

@@ -7,7 +7,7 @@ use super::failure::{Failure, Place};
 use super::job::WeltJob;
 use super::mesh::{WeltMesh, mesh_of};
 use super::options::{self, Options};
-use super::report::WeltReport;
+use super::report::{WeltReport, hand_over};
 use super::rules::WeltRules;
 use super::selection::WeltSelection;
 use crate::feature::{self, Profile, Request};
@@ -123,11 +123,10 @@ unsafe fn apply(
     let job = job.map_or(&idle, |job| &job.job);
     let done = mesh.change(|mesh| {
         let selection = selection.on(mesh)?;
-        Ok(feature::apply(mesh, selection, &request, &options, job)?)
+        let done = feature::apply(mesh, selection, &request, &options, job)?;
+        report.is_some().then(|| WeltReport::new(&done)).transpose()
     })?;
-    if let Some(report) = report {
-        report.handle(WeltReport::new(&done)?);
-    }
+    hand_over(report, done);
     Ok(())
 }
 
@@ -250,14 +249,11 @@ pub unsafe extern "C" fn welt_mesh_displace(
         }
         let heights: Vec<(VertexId, f64)> =
             vertices.iter().map(|&v| VertexId(v)).zip(heights.iter().copied()).collect();
-        mesh.change(|mesh| {
-            let checkpoint = mesh.begin();
+        mesh.transact(|mesh| {
             let left_out = feature::raise(mesh, &heights);
             if left_out.is_empty() {
-                mesh.commit(checkpoint);
                 return Ok(());
             }
-            mesh.rollback(checkpoint);
             let place = |v: &VertexId| Place::vertex(v.0, "the surface has no normal here");
             Err(Failure {
                 places: left_out.iter().map(place).collect(),

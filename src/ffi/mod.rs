@@ -11,6 +11,8 @@ mod arguments;
 mod boundary;
 mod error;
 mod failure;
+#[cfg(feature = "fault-injection")]
+mod fault;
 mod feature;
 mod file;
 mod job;
@@ -30,6 +32,8 @@ mod tests;
 mod version;
 
 pub use error::*;
+#[cfg(feature = "fault-injection")]
+pub use fault::*;
 pub use feature::*;
 pub use file::*;
 pub use job::*;

@@ -7,7 +7,8 @@ use super::failure::Failure;
 use super::feature::method;
 use super::job::WeltJob;
 use super::mesh::{WeltMesh, mesh_of};
-use super::report::WeltReport;
+use super::report::{WeltReport, hand_over};
+use crate::fault;
 use crate::job::Job;
 use crate::mesh::{FaceId, VertexId};
 use crate::optimise::{self, Target};
@@ -24,20 +25,23 @@ pub struct WeltSurface {
 /// mesh: must not be NULL.
 /// faces: the faces whose surface is frozen, 0-based; NULL for all. Cost follows their number.
 /// count: number of faces; 0 where faces is NULL.
+/// job: may be NULL.
 /// surface: receives the handle; free it with welt_surface_free.
 ///
-/// Fails with WELT_ERROR_ARGUMENT where a face does not exist. Since: 0.1.
+/// Fails with WELT_ERROR_ARGUMENT where a face does not exist, and with WELT_ERROR_CANCELLED. Since: 0.1.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn welt_surface_create(
     mesh: *const WeltMesh,
     faces: *const u32,
     count: usize,
+    job: *const WeltJob,
     surface: *mut *mut WeltSurface,
     error: *mut *mut WeltError,
 ) -> i32 {
     let body = || {
-        // SAFETY: the header asks for a living mesh, an array of this count and a place for the handle.
-        let (mesh, output) = unsafe { (mesh_of(mesh)?, Output::new(surface, "surface")?) };
+        // SAFETY: the header asks for a living mesh, an array of this count, a job or NULL and a place for the handle.
+        let (mesh, job, output) =
+            unsafe { (mesh_of(mesh)?, arguments::optional(job, "job")?, Output::new(surface, "surface")?) };
         let faces: Vec<FaceId> = if faces.is_null() {
             mesh.faces().collect()
         } else {
@@ -47,7 +51,9 @@ pub unsafe extern "C" fn welt_surface_create(
         if let Some(missing) = faces.iter().find(|f| f.is_boundary() || !mesh.has_face(**f)) {
             return Err(Failure::argument(format!("face {} does not exist", missing.0)));
         }
-        output.handle(WeltSurface { target: Target::freeze(mesh, &faces) });
+        let idle = Job::new();
+        let job = job.map_or(&idle, |job| &job.job);
+        output.handle(WeltSurface { target: Target::freeze(mesh, &faces, job)? });
         Ok(())
     };
     // SAFETY: the header asks for NULL or a place for an error.
@@ -118,6 +124,7 @@ pub unsafe extern "C" fn welt_surface_evaluate(
             if uv.iter().any(|parameter| parameter.is_nan()) {
                 return Err(Failure::argument(format!("a parameter of point {i} is NaN")));
             }
+            fault::point("evaluate");
             found.push(jet(surface.evaluate(FaceId(face), corner, uv[0], uv[1])));
         }
         buffer.fill(found.iter().flatten().flat_map(|vector| vector.to_array()));
@@ -184,22 +191,11 @@ pub unsafe extern "C" fn welt_mesh_fit(
         }
         let idle = Job::new();
         let job = job.map_or(&idle, |job| &job.job);
-        let done = mesh.change(|mesh| {
-            let checkpoint = mesh.begin();
-            match optimise::fit(mesh, &active, &surface.target, method, job) {
-                Ok(done) => {
-                    mesh.commit(checkpoint);
-                    Ok(done)
-                }
-                Err(cancelled) => {
-                    mesh.rollback(checkpoint);
-                    Err(cancelled.into())
-                }
-            }
+        let done = mesh.transact(|mesh| {
+            let done = optimise::fit(mesh, &active, &surface.target, method, job)?;
+            report.is_some().then(|| WeltReport::new(&done)).transpose()
         })?;
-        if let Some(report) = report {
-            report.handle(WeltReport::new(&done)?);
-        }
+        hand_over(report, done);
         Ok(())
     };
     // SAFETY: the header asks for NULL or a place for an error.

@@ -390,7 +390,7 @@ fn sharpness_and_evaluation_check_their_arguments() {
             WELT_OK
         );
         assert_eq!(welt_mesh_set_holes(mesh, [2].as_ptr(), 1, null_mut()), WELT_OK);
-        assert_eq!(welt_surface_create(mesh, null(), 0, &mut surface, null_mut()), WELT_OK);
+        assert_eq!(welt_surface_create(mesh, null(), 0, null(), &mut surface, null_mut()), WELT_OK);
         let (faces, corners, parameters) = ([0u32, 2], [0u32, 1], [0.0f64, 0.0, 0.5, 0.5]);
         let (f, c, p) = (faces.as_ptr(), corners.as_ptr(), parameters.as_ptr());
         assert_eq!(welt_surface_evaluate(surface, f, c, p, 2, out, 35, &mut error), WELT_ERROR_BUFFER);

@@ -5,6 +5,7 @@ use super::plan::{Hop, Reach};
 use super::queue::Queue;
 use super::ruleset::{Rule, RuleSet};
 use super::search::{Search, View, bind};
+use crate::fault;
 use crate::gml::{Budget, Environment, Failure, Fault, Machine, Program, Stop, Value, show_node};
 use crate::job::{Cancelled, Job};
 use crate::mesh::{Checkpoint, FaceId, Mesh, Node, Symbol};
@@ -326,6 +327,7 @@ impl<'a> Run<'a> {
         }
         self.counts[number] += 1;
         self.total += 1;
+        fault::point("rules");
         // The same anchor may have another match.
         self.queues[number].push(anchor);
         self.after(number, before);

@@ -12,6 +12,7 @@ pub use boundary::BoundaryCurves;
 pub(crate) use boundary::evaluate as evaluate_b_spline;
 pub(crate) use linear::{LeastSquares, Row};
 
+use crate::fault;
 use crate::job::{Cancelled, Job};
 use crate::mesh::{FaceId, Mesh, VertexId};
 use crate::subdivision::{LimitMask, limit_mask, vertex_normal};
@@ -106,17 +107,20 @@ pub struct Target {
 
 impl Target {
     /// Freezes the limit surface of `faces`.
-    pub fn freeze(mesh: &Mesh, faces: &[FaceId]) -> Self {
+    ///
+    /// # Errors
+    /// [`Cancelled`].
+    pub fn freeze(mesh: &Mesh, faces: &[FaceId], job: &Job) -> Result<Self, Cancelled> {
         let (mut sum, mut count) = (0.0, 0u32);
         for h in faces.iter().flat_map(|&f| mesh.face_half_edges(f)) {
             sum += mesh.edge_length(h);
             count += 1;
         }
-        Self {
-            surface: LimitSurface::around(mesh, faces),
+        Ok(Self {
+            surface: LimitSurface::around_with(mesh, faces, job)?,
             boundary: BoundaryCurves::around(mesh, faces),
             reach: 2.0 * sum / f64::from(count.max(1)),
-        }
+        })
     }
 }
 
@@ -265,6 +269,7 @@ impl Lines {
         for ((&v, normal), shift) in self.vertices.iter().zip(&self.normals).zip(shifts) {
             if shift.is_finite() {
                 mesh.set_position(v, mesh.position(v) + *normal * shift);
+                fault::point("fit");
             }
         }
     }

@@ -3,6 +3,7 @@
 use super::mask::{RingMask, position_mask, sharp_masks, tangent_masks};
 use super::ring::{LargeFaces, Ring, RingShape};
 use super::sharpness::all_smooth;
+use crate::fault;
 use crate::mesh::{HalfEdgeId, Mesh, VertexId};
 use glam::DVec3;
 use rustc_hash::FxHashMap;
@@ -93,6 +94,7 @@ struct Shared {
 
 impl Shared {
     fn new(mesh: &Mesh) -> Self {
+        fault::point("limit");
         Self { smooth: all_smooth(mesh), large: LargeFaces::default(), tangents: FxHashMap::default() }
     }
 }

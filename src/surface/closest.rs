@@ -5,6 +5,7 @@ use super::freeze::{CornerEntry, Domain};
 use super::minimise::minimise;
 use super::tree::Content;
 use super::{Bicubic, LimitSurface};
+use crate::fault;
 use crate::mesh::FaceId;
 use crate::subdivision::patch_corner::Points;
 use glam::DVec3;
@@ -105,6 +106,7 @@ impl LimitSurface {
     ///
     /// At a point that is equally far from many points of the surface (the centre of a sphere) one of them.
     pub fn closest(&self, point: DVec3, options: &ClosestOptions) -> Option<Foot> {
+        fault::point("closest");
         let near_enough = point.abs().max_element() <= FARTHEST;
         if !near_enough || options.radius.is_nan() {
             return None;

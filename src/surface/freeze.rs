@@ -92,8 +92,15 @@ pub(super) struct PatchPlace {
     pub(super) rims: u8,
 }
 
-/// Freezes `faces`, which are ascending, real and exist.
-pub(super) fn freeze(mesh: &Mesh, faces: Vec<FaceId>) -> LimitSurface {
+/// Faces between two calls of `step`.
+const SLICE: usize = 256;
+
+/// Freezes `faces`, which are ascending, real and exist. `step` is told how much is done, in [0, 1], and may end it.
+pub(super) fn freeze<E>(
+    mesh: &Mesh,
+    faces: &[FaceId],
+    step: impl Fn(f64) -> Result<(), E>,
+) -> Result<LimitSurface, E> {
     let mut frozen = LimitSurface {
         faces: Vec::with_capacity(faces.len()),
         places: Vec::with_capacity(faces.len()),
@@ -106,7 +113,14 @@ pub(super) fn freeze(mesh: &Mesh, faces: Vec<FaceId>) -> LimitSurface {
         tolerance: 0.0,
     };
     let mut scratch = Points::new();
-    for &face in faces.iter().filter(|&&face| has_limit(mesh, face)) {
+    for (i, &face) in faces.iter().enumerate() {
+        if i % SLICE == 0 {
+            // The tree over everything is a part, too.
+            step(i as f64 / (faces.len() + faces.len() / 4 + 1) as f64)?;
+        }
+        if !has_limit(mesh, face) {
+            continue;
+        }
         let patches = Patch::of_face(mesh, face);
         if patches.is_empty() {
             continue;
@@ -118,10 +132,12 @@ pub(super) fn freeze(mesh: &Mesh, faces: Vec<FaceId>) -> LimitSurface {
             frozen.places.push(PatchPlace { face, corner: corner as u32, rims });
             frozen.add_patch(patch, &mut scratch);
         }
-        mark_rims(&mut frozen, mesh, &faces, face, count);
+        mark_rims(&mut frozen, mesh, faces, face, count);
     }
+    step(0.8)?;
     frozen.finish();
-    frozen
+    step(1.0)?;
+    Ok(frozen)
 }
 
 /// Marks the sides of the last face's patches beyond which nothing is frozen, and those along infinite creases.

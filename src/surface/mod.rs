@@ -19,6 +19,7 @@ pub use closest::{ClosestOptions, Facing, Foot};
 pub use deviation::{Comparison, Deviation, DeviationSample, SAMPLES, Sampling, compare, deviation_samples};
 pub use line::Hit;
 
+use crate::job::{Cancelled, Job};
 use crate::mesh::{FaceId, Mesh};
 use crate::subdivision::SurfacePoint;
 use crate::subdivision::patch::{Evaluated, Patch, evaluate_corner, to_quarter};
@@ -27,6 +28,7 @@ use crate::subdivision::patch_corner::Corner;
 use freeze::{CornerEntry, Entry, LEVELS, PatchPlace, Piece};
 use glam::DVec3;
 use smallvec::SmallVec;
+use std::convert::Infallible;
 use tree::Tree;
 
 /// The limit surface of a mesh or of some of its faces, frozen. See the [module](self).
@@ -47,23 +49,43 @@ pub struct LimitSurface {
     tolerance: f64,
 }
 
+/// Progress of work that nobody watches.
+fn unwatched(_: f64) -> Result<(), Infallible> {
+    Ok(())
+}
+
+/// The real ones of `faces`, ascending, each once.
+fn existing(mesh: &Mesh, faces: &[FaceId]) -> Vec<FaceId> {
+    let mut faces: Vec<FaceId> =
+        faces.iter().copied().filter(|&f| !f.is_boundary() && mesh.has_face(f)).collect();
+    faces.sort_unstable();
+    faces.dedup();
+    faces
+}
+
 impl LimitSurface {
     /// Freezes the whole surface (Catmull-Clark) with the sharpness and the options of the mesh. Faces that have no
     /// limit surface are left out.
     pub fn new(mesh: &Mesh) -> Self {
         let faces: Vec<FaceId> = mesh.faces().collect();
-        freeze::freeze(mesh, faces)
+        let Ok(frozen) = freeze::freeze(mesh, &faces, unwatched);
+        frozen
     }
 
     /// Freezes the surface of `faces` only; boundary loops and faces that do not exist or have no limit surface are
     /// passed over. Time and
     /// memory follow the number of these faces and their neighbours, not the mesh.
     pub fn around(mesh: &Mesh, faces: &[FaceId]) -> Self {
-        let mut faces: Vec<FaceId> =
-            faces.iter().copied().filter(|&f| !f.is_boundary() && mesh.has_face(f)).collect();
-        faces.sort_unstable();
-        faces.dedup();
-        freeze::freeze(mesh, faces)
+        let Ok(frozen) = freeze::freeze(mesh, &existing(mesh, faces), unwatched);
+        frozen
+    }
+
+    /// [`around`](Self::around) under the eyes of a job.
+    ///
+    /// # Errors
+    /// [`Cancelled`].
+    pub fn around_with(mesh: &Mesh, faces: &[FaceId], job: &Job) -> Result<Self, Cancelled> {
+        freeze::freeze(mesh, &existing(mesh, faces), |done| job.step("freeze", done))
     }
 
     /// Frozen faces, ascending.
