@@ -47,7 +47,7 @@ impl Execution<'_, '_, '_> {
             .collect();
         let positions = positions.ok_or_else(|| error("makeFaces needs an array of points"))?;
         let corner = |value: &Value| match value {
-            Value::Number(x) => Some(Corner::Inner(*x as usize)),
+            Value::Number(x) if *x >= 0.0 && x.fract() == 0.0 => Some(Corner::Inner(*x as usize)),
             Value::Node(Node::Vertex(v)) => Some(Corner::Vertex(*v)),
             _ => None,
         };

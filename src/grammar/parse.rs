@@ -17,7 +17,8 @@ const LONGEST: usize = 1 << 24;
 /// Parameters and rules that a rule set may have.
 const MOST_PARAMETERS: usize = 1000;
 const MOST_RULES: usize = 10_000;
-const MOST_DEFINITIONS: usize = 1000;
+/// Definitions may use one another in a row, which takes a call each to read.
+const MOST_DEFINITIONS: usize = 300;
 const KEYWORDS: [&str; 5] = ["include", "parameter", "define", "phase", "rule"];
 
 pub(super) fn parse(name: &str, text: &str, loader: &Loader<'_>) -> Result<RuleSet, RulesError> {

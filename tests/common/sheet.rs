@@ -11,7 +11,8 @@ use welt::grammar::{self, RuleSet, RunOptions};
 use welt::job::Job;
 use welt::mesh::{Domain, FaceId, HalfEdgeId, Mesh, Node, Polygons, Value, VertexId};
 use welt::optimise::{self, Method, Target};
-use welt::subdivision::{evaluate, limit_mask, limit_normal};
+use welt::subdivision::{limit_mask, limit_normal};
+use welt::surface::LimitSurface;
 
 /// The cross-section of a band: places in half widths, heights over the base in units of its depth.
 #[derive(Clone, Debug)]
@@ -329,6 +330,7 @@ pub struct Sample {
 /// flat: it says where on the grid a point belongs.
 pub fn samples(applied: &Applied, flat: &Mesh, centre: DVec2, reach: f64, per_side: usize) -> Vec<Sample> {
     let mut samples = Vec::new();
+    let surfaces = [flat, &applied.base, &applied.mesh].map(LimitSurface::new);
     for f in flat.faces() {
         let count = flat.arity(f);
         let middle = flat.face_vertices(f).map(|v| flat.position(v)).sum::<DVec3>() / count as f64;
@@ -340,8 +342,8 @@ pub fn samples(applied: &Applied, flat: &Mesh, centre: DVec2, reach: f64, per_si
             (0..quadrants).flat_map(|c| (0..n).flat_map(move |a| (0..n).map(move |b| (c, a, b))))
         {
             let [u, v] = [a, b].map(|k| (k as f64 + 0.5) / n as f64);
-            let [grid, base, point] = [flat, &applied.base, &applied.mesh]
-                .map(|mesh| evaluate(mesh, f, corner, u, v).expect("a point"));
+            let [grid, base, point] =
+                surfaces.each_ref().map(|surface| surface.evaluate(f, corner, u, v).expect("a point"));
             let curvature = point.second.map_or(0.0, |d| {
                 let (e, g, m) = (point.du.dot(point.du), point.dv.dot(point.dv), point.du.dot(point.dv));
                 let [l, mm, nn] = [d.uu, d.uv, d.vv].map(|x| x.dot(point.normal));
