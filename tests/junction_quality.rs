@@ -7,7 +7,7 @@ mod junction_cases;
 mod sheet;
 
 use glam::DVec2;
-use junction_cases::{CENTRE, Case, DEPTH, SIDE, cases, flat, piped_cases};
+use junction_cases::{CENTRE, Case, DEPTH, cases, flat, piped_cases};
 use sheet::{Applied, Ideal, Sample, apply};
 use welt::feature;
 use welt::grammar::RuleSet;
@@ -17,7 +17,7 @@ use welt::optimise::Method;
 const TOLERANCE: f64 = 1.02;
 
 fn measured(rules: &RuleSet, case: &Case) -> (Applied, Vec<Sample>) {
-    let result = apply(rules, sheet::sheet(SIDE, flat), SIDE, &case.bands, &case.marks, Method::None, &[]);
+    let result = apply(rules, sheet::sheet(flat), &case.bands, &case.marks, Method::None, &[]);
     let samples = sheet::samples(&result, &result.base, CENTRE, 1.5, 32);
     (result, samples)
 }
@@ -33,12 +33,7 @@ const JUNCTIONS: [Figures; 6] = [
     ("crossing", [[0.054, 0.25, 0.995, 1.0, 0.038], [0.0513, 0.25, 0.995, 1.0, 0.044]], 121, &[]),
     ("T-DE", [[0.038, 0.20, 0.96, 1.01, 0.018], [0.049, 0.34, 0.96, 1.01, 0.034]], 104, &[5]),
     ("T-D", [[0.035, 0.20, 0.96, 1.01, 0.016], [0.046, 0.34, 0.96, 1.01, 0.032]], 108, &[]),
-    (
-        "T, stem of four lines",
-        [[0.079, 0.30, 0.86, 1.02, 0.034], [0.087, 0.43, 0.86, 1.02, 0.060]],
-        112,
-        &[],
-    ),
+    ("T, stem of four lines", [[0.079, 0.30, 0.86, 1.02, 0.034], [0.087, 0.43, 0.86, 1.02, 0.060]], 112, &[]),
 ];
 
 #[test]
@@ -102,9 +97,9 @@ fn a_tapering_end_runs_out() {
     let rules = feature::linear_rules().expect("rules");
     let case = &cases(0.15)[6];
     let depth_at = |taper: f64, y: f64| {
-        let sheet = sheet::sheet(SIDE, flat);
+        let sheet = sheet::sheet(flat);
         let set = [("taper", taper)];
-        let result = apply(&rules, sheet, SIDE, &case.bands, &case.marks, Method::None, &set);
+        let result = apply(&rules, sheet, &case.bands, &case.marks, Method::None, &set);
         let samples = sheet::samples(&result, &result.base, CENTRE, 1.5, 32);
         let near = samples.iter().filter(|s| (s.at - DVec2::new(3.5, y)).abs().max_element() < 0.04);
         near.map(|s| -s.height / DEPTH).fold(0.0, f64::max)

@@ -16,7 +16,8 @@ use Side::{Lines, Parity, Whole};
 
 /// A regular polygon with its middle in the origin.
 fn polygon(sides: usize) -> Mesh {
-    let angle = |i: usize| (i as f64 - 0.5) * std::f64::consts::TAU / sides as f64 - std::f64::consts::FRAC_PI_2;
+    let angle =
+        |i: usize| (i as f64 - 0.5) * std::f64::consts::TAU / sides as f64 - std::f64::consts::FRAC_PI_2;
     let polygons = Polygons {
         positions: (0..sides).map(|i| DVec3::new(angle(i).cos(), angle(i).sin(), 0.0)).collect(),
         face_sizes: vec![sides as u32],
@@ -64,7 +65,12 @@ struct Result {
 
 impl Result {
     fn fired(&self, rule: &str) -> usize {
-        self.outcome.applications.iter().filter(|(name, _)| *name == rule).map(|(_, count)| *count as usize).sum()
+        self.outcome
+            .applications
+            .iter()
+            .filter(|(name, _)| *name == rule)
+            .map(|(_, count)| *count as usize)
+            .sum()
     }
 }
 
@@ -74,7 +80,12 @@ fn run(rules: &RuleSet, sides: &[Side]) -> Result {
     let outcome = grammar::run(rules, &mut mesh, &RunOptions::default())
         .unwrap_or_else(|error| panic!("{sides:?}: {error}"));
     mesh.validate_control_mesh().unwrap_or_else(|error| panic!("{sides:?}: {error}"));
-    let inner = mesh.positions().iter().enumerate().filter(|(v, _)| !mesh.is_boundary_vertex(VertexId(*v as u32))).count();
+    let inner = mesh
+        .positions()
+        .iter()
+        .enumerate()
+        .filter(|(v, _)| !mesh.is_boundary_vertex(VertexId(*v as u32)))
+        .count();
     let mut others: Vec<usize> = mesh.faces().map(|f| mesh.arity(f)).filter(|&arity| arity != 4).collect();
     others.sort_unstable();
     Result { mesh, outcome, inner, others }

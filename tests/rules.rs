@@ -408,7 +408,10 @@ fn definitions() {
         "2 `pop` needs more values than there are on the stack"
     );
     // A definition that a condition uses may not change the mesh.
-    assert!(message("define a { e \"n\" attrdel }\nrule R { e } where { 1 } action { }").contains("unknown word `e`"));
+    assert!(
+        message("define a { e \"n\" attrdel }\nrule R { e } where { 1 } action { }")
+            .contains("unknown word `e`")
+    );
     assert!(
         message("define a { \"n\" attrdel }\nrule R { e } where { e a 1 } action { }")
             .contains("changes the mesh; a condition may only look at it")
@@ -567,7 +570,9 @@ fn mistakes_at_load() {
     refused("rule A { a } action { } phase p phase p", &["1:39 phase `p` was begun before [p]"]);
     refused(
         "rul A { a }",
-        &["1:1 `rul` has no meaning here; expected `include` or `parameter` or `define` or `phase` or `rule` [rul]"],
+        &[
+            "1:1 `rul` has no meaning here; expected `include` or `parameter` or `define` or `phase` or `rule` [rul]",
+        ],
     );
     refused(
         "parameter p 1 range 0 2 unit u \"h\" parameter p 1 range 0 2 unit u \"h\"",

@@ -5,7 +5,8 @@ use super::pattern::{Pattern, infer_kinds};
 use super::plan::{Graph, NodePlan, Step, edges, number_tests};
 use super::ruleset::{Forbidden, Loader, Parameter, Rule, RuleSet};
 use crate::gml::{
-    Cursor, Definition, Diagnostic, Leaves, Scope, Source, Span, Strings, check, compile_tokens, is_word, script,
+    Cursor, Definition, Diagnostic, Leaves, Scope, Source, Span, Strings, check, compile_tokens, is_word,
+    script,
 };
 use crate::mesh::Domain;
 use std::sync::Arc;

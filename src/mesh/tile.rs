@@ -3,9 +3,9 @@
 //! Made of Euler operators, so that it is logged and undone like them: one face after the other is cut off from what
 //! is left of the old face, which stays a disk. A disk of faces can always be taken apart in this way.
 
+use super::Mesh;
 use super::euler::EulerError;
 use super::ids::{HalfEdgeId, VertexId};
-use super::Mesh;
 use glam::DVec3;
 
 /// A corner of a face in a tiling.

@@ -3,10 +3,9 @@
 
 #![allow(dead_code, reason = "not every program that shares this module uses all of it")]
 
-use super::sheet::{Band, Line, Marked, line, sideways, upwards};
+use super::sheet::{Band, Line, Marked, SIDE, line, sideways, upwards};
 use glam::{DVec2, DVec3};
 
-pub const SIDE: u32 = 7;
 pub const CENTRE: DVec2 = DVec2::new(3.5, 3.5);
 pub const DEPTH: f64 = 0.1;
 
@@ -14,6 +13,7 @@ pub fn flat(x: f64, y: f64) -> DVec3 {
     DVec3::new(x, y, 0.0)
 }
 
+#[derive(Clone)]
 pub struct Case {
     pub name: &'static str,
     pub bands: Vec<Band>,
@@ -97,7 +97,11 @@ pub fn piped_cases() -> Vec<Case> {
         case("piping alone", vec![], vec![]),
         case("seam across piping", upwards(3, 0..=7, 1), vec![whole(1)]),
         case("seam into piping", upwards(3, 0..=3, 1), vec![stem(1)]),
-        case("seam into piping, all quads", [upwards(3, 0..=3, 1), upwards(3, 4..=7, 2)].concat(), vec![stem(1)]),
+        case(
+            "seam into piping, all quads",
+            [upwards(3, 0..=3, 1), upwards(3, 4..=7, 2)].concat(),
+            vec![stem(1)],
+        ),
         case("piping across piping", upwards(3, 0..=7, 3), vec![whole(3)]),
         case("piping into piping", upwards(3, 0..=3, 3), vec![stem(3)]),
         Case {
@@ -106,12 +110,7 @@ pub fn piped_cases() -> Vec<Case> {
             marks: [sideways(3, 0..=7, 1), upwards(3, 0..=3, 0)].concat(),
             lines: vec![line([-1.0, 3.5], [end, 3.5], 1), stem(0)],
         },
-        Case {
-            name: "piping ends",
-            bands: bands(),
-            marks: upwards(3, 0..=3, 0),
-            lines: vec![stem(0)],
-        },
+        Case { name: "piping ends", bands: bands(), marks: upwards(3, 0..=3, 0), lines: vec![stem(0)] },
         Case {
             name: "piping corner",
             bands: bands(),

@@ -69,8 +69,7 @@ impl Band {
             .chain(self.lines.iter().map(|line| line.0 * self.half))
             .chain((0..3).map(|i| f64::from(i) + 0.5))
             .collect();
-        let control: Vec<f64> =
-            [0.0; 3].into_iter().chain(self.control()).chain([0.0; 3]).collect();
+        let control: Vec<f64> = [0.0; 3].into_iter().chain(self.control()).chain([0.0; 3]).collect();
         let mut table = Vec::new();
         for i in 1..control.len() - 2 {
             for s in 0..200 {
@@ -123,18 +122,27 @@ pub fn solve(mut rows: Vec<Vec<f64>>, mut right: Vec<f64>) -> Vec<f64> {
     right
 }
 
-/// A mark: the edge from one grid point to another, and which band crosses it.
-pub type Marked = ([u32; 2], [u32; 2], usize);
+/// A mark: the edge between two vertices, and which band crosses it.
+pub type Marked = (VertexId, VertexId, usize);
 
-/// A sheet of `side` x `side` cells; grid point (i, j) stands at `shape(i, j)`.
-pub fn sheet(side: u32, shape: impl Fn(f64, f64) -> DVec3) -> Mesh {
+/// Cells along each side of a sheet.
+pub const SIDE: u32 = 7;
+
+/// Vertex of grid point (i, j).
+pub fn at(i: u32, j: u32) -> VertexId {
+    VertexId(j * (SIDE + 1) + i)
+}
+
+/// A sheet whose grid point (i, j) stands at `shape(i, j)`.
+pub fn sheet(shape: impl Fn(f64, f64) -> DVec3) -> Mesh {
     let mut polygons = Polygons::default();
-    for (j, i) in (0..=side).flat_map(|j| (0..=side).map(move |i| (j, i))) {
+    for (j, i) in (0..=SIDE).flat_map(|j| (0..=SIDE).map(move |i| (j, i))) {
         polygons.positions.push(shape(i.into(), j.into()));
-        if i < side && j < side {
-            let a = j * (side + 1) + i;
+        if i < SIDE && j < SIDE {
             polygons.face_sizes.push(4);
-            polygons.face_vertices.extend([a, a + 1, a + side + 2, a + side + 1]);
+            polygons
+                .face_vertices
+                .extend([at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)].map(|v| v.0));
         }
     }
     Mesh::from_polygons(&polygons).expect("a sheet")
@@ -142,12 +150,12 @@ pub fn sheet(side: u32, shape: impl Fn(f64, f64) -> DVec3) -> Mesh {
 
 /// Marks of a band that runs upwards between grid columns i and i + 1, over rows of grid points.
 pub fn upwards(i: u32, rows: std::ops::RangeInclusive<u32>, band: usize) -> Vec<Marked> {
-    rows.map(|j| ([i, j], [i + 1, j], band)).collect()
+    rows.map(|j| (at(i, j), at(i + 1, j), band)).collect()
 }
 
 /// Marks of a band that runs sideways between grid rows j and j + 1.
 pub fn sideways(j: u32, columns: std::ops::RangeInclusive<u32>, band: usize) -> Vec<Marked> {
-    columns.map(|i| ([i, j + 1], [i, j], band)).collect()
+    columns.map(|i| (at(i, j + 1), at(i, j), band)).collect()
 }
 
 /// A sheet with features.
@@ -171,18 +179,16 @@ impl Applied {
 pub fn apply(
     rules: &RuleSet,
     mut mesh: Mesh,
-    side: u32,
     bands: &[Band],
     marks: &[Marked],
     method: Method,
     set: &[(&str, f64)],
 ) -> Applied {
-    let at = |[i, j]: [u32; 2]| VertexId(j * (side + 1) + i);
     let faces: Vec<FaceId> = mesh.faces().collect();
     let target = (method != Method::None).then(|| Target::freeze(&mesh, &faces));
     let names = ["cuts", "lines", "mark", "color", "t"].map(|name| mesh.intern(name));
     for (number, &(from, to, band)) in marks.iter().enumerate() {
-        let h = mesh.find_half_edge(at(from), at(to)).expect("an edge");
+        let h = mesh.find_half_edge(from, to).expect("an edge");
         let band = &bands[band];
         let forward: Vec<f64> = band.lines.iter().map(|line| 0.5 + line.0 * band.half).collect();
         let lines: Vec<f64> = (1..=forward.len()).map(|line| line as f64).collect();
@@ -286,22 +292,31 @@ pub fn line(a: [f64; 2], b: [f64; 2], band: usize) -> Line {
 pub struct Ideal {
     sections: Vec<Vec<[f64; 3]>>,
     lines: Vec<Line>,
-}
-
-fn distance(p: DVec2, (a, b, _): &Line) -> f64 {
-    let t = ((p - *a).dot(*b - *a) / (*b - *a).length_squared()).clamp(0.0, 1.0);
-    (p - a.lerp(*b, t)).length()
+    /// The sides of a cell of the grid.
+    cell: [DVec2; 2],
 }
 
 impl Ideal {
     pub fn new(bands: &[Band], lines: Vec<Line>) -> Self {
-        Self { sections: bands.iter().map(Band::section).collect(), lines }
+        Self { sections: bands.iter().map(Band::section).collect(), lines, cell: [DVec2::X, DVec2::Y] }
+    }
+
+    /// On a sheet whose cells have the sides (1, 0) and `v`, also of length 1.
+    pub fn sheared(self, v: DVec2) -> Self {
+        Self { cell: [DVec2::X, v], ..self }
+    }
+
+    /// Distance from a line, in edges that stand at a right angle to it.
+    fn distance(&self, p: DVec2, (a, b, _): &Line) -> f64 {
+        let [p, a, b] = [p, *a, *b].map(|p| self.cell[0] * p.x + self.cell[1] * p.y);
+        let t = ((p - a).dot(b - a) / (b - a).length_squared()).clamp(0.0, 1.0);
+        (p - a.lerp(b, t)).length() / self.cell[0].perp_dot(self.cell[1])
     }
 
     /// Height and mean curvature.
     pub fn at(&self, p: DVec2) -> [f64; 2] {
         let found = self.lines.iter().map(|line| {
-            let (table, x) = (&self.sections[line.2], distance(p, line));
+            let (table, x) = (&self.sections[line.2], self.distance(p, line));
             let i = table.partition_point(|entry| entry[0] <= x);
             if i == 0 || i == table.len() {
                 return [0.0; 2];
@@ -392,7 +407,8 @@ pub fn fitted_end(samples: &[Sample], bands: &[Band], line: Line, depth: f64) ->
 
 /// Error of the mean curvature on a flat sheet, at more than `clear` from all centre lines; rms and greatest.
 pub fn curvature_error(samples: &[Sample], ideal: &Ideal, clear: f64) -> [f64; 2] {
-    let outside = samples.iter().filter(|s| ideal.lines.iter().all(|line| distance(s.at, line) > clear));
+    let outside =
+        samples.iter().filter(|s| ideal.lines.iter().all(|line| ideal.distance(s.at, line) > clear));
     size(outside.map(|s| (s.curvature - ideal.at(s.at)[1], s.area)))
 }
 
