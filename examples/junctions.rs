@@ -380,7 +380,6 @@ fn pictures(rules: &RuleSet, folder: &std::path::Path) {
             title: name,
             panels: vec![
                 panel(Content::Cage { shape: control, edges: &[], displaced: &greens }, "control mesh"),
-                panel(Content::Surface { shape, normals: &normals, finish: Finish::Studio }, "limit surface"),
                 panel(
                     Content::Surface { shape, normals: &normals, finish: Finish::ReflectionLines },
                     "reflection lines",
@@ -396,9 +395,9 @@ fn pictures(rules: &RuleSet, folder: &std::path::Path) {
                     "error against the sharp union",
                 ),
             ],
-            camera: Camera::framing(&frame, DVec3::new(0.15, -0.6, 1.0), DVec3::Y),
-            width: 1280,
-            height: 420,
+            camera: Camera::framing(&frame, DVec3::new(0.0, -0.5, 1.0), DVec3::Y),
+            width: 960,
+            height: 400,
         }
         .render();
         let mut bytes = Vec::new();

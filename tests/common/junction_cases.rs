@@ -84,8 +84,9 @@ pub fn piped_cases() -> Vec<Case> {
         vec![Band::piping(0.24, D), Band::groove(0.15, D), Band::parity(), stem]
     };
     let bar = || line([-1.0, 3.5], [end, 3.5], 0);
-    let whole = |band| line([3.5, -1.0], [3.5, end], band);
-    let stem = |band| line([3.5, -1.0], [3.5, 3.5], band);
+    // What meets a piping ends at its rim.
+    let stem = |band| line([3.5, -1.0], [3.5, 3.5 - 0.24], band);
+    let whole = |band| vec![stem(band), line([3.5, 3.5 + 0.24], [3.5, end], band)];
     let along = sideways(3, 0..=7, 0);
     let case = |name, across: Vec<Marked>, lines: Vec<Line>| Case {
         name,
@@ -95,14 +96,14 @@ pub fn piped_cases() -> Vec<Case> {
     };
     vec![
         case("piping alone", vec![], vec![]),
-        case("seam across piping", upwards(3, 0..=7, 1), vec![whole(1)]),
+        case("seam across piping", upwards(3, 0..=7, 1), whole(1)),
         case("seam into piping", upwards(3, 0..=3, 1), vec![stem(1)]),
         case(
             "seam into piping, all quads",
             [upwards(3, 0..=3, 1), upwards(3, 4..=7, 2)].concat(),
             vec![stem(1)],
         ),
-        case("piping across piping", upwards(3, 0..=7, 3), vec![whole(3)]),
+        case("piping across piping", upwards(3, 0..=7, 3), whole(3)),
         case("piping into piping", upwards(3, 0..=3, 3), vec![stem(3)]),
         Case {
             name: "piping into seam",

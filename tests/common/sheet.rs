@@ -318,10 +318,10 @@ impl Ideal {
         let found = self.lines.iter().map(|line| {
             let (table, x) = (&self.sections[line.2], self.distance(p, line));
             let i = table.partition_point(|entry| entry[0] <= x);
-            if i == 0 || i == table.len() {
+            if i == table.len() {
                 return [0.0; 2];
             }
-            let (a, b) = (table[i - 1], table[i]);
+            let (a, b) = (table[i.max(1) - 1], table[i.max(1)]);
             let t = (x - a[0]) / (b[0] - a[0]).max(1e-300);
             [1, 2].map(|k| a[k] + (b[k] - a[k]) * t)
         });
