@@ -141,12 +141,12 @@ fn random_grooves_are_resolved() {
             let marks: Vec<Mark> = choose(&cage, &mut random)
                 .into_iter()
                 .filter(|&h| cage.edge_length(h) > 0.0)
-                .map(|half_edge| Mark { half_edge, t: 0.5, kind: "red".to_owned() })
+                .map(|half_edge| Mark { half_edge, t: 0.5, kind: "red".to_owned(), breadth: None })
                 .collect();
             if marks.is_empty() {
                 continue;
             }
-            let selection = Selection { marks, ends: Vec::new() };
+            let selection = Selection { marks, ..Selection::default() };
             let mut mesh = cage.clone();
             let report = feature::apply(&mut mesh, &selection, &request, &Options::default(), &Job::new())
                 .unwrap_or_else(|error| panic!("{name}: {error}"));
