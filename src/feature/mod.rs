@@ -29,7 +29,9 @@ pub use length::{Length, significant};
 pub use linear::apply;
 pub use place::WidthError;
 pub use profile::{Height, Line, Parameter, Profile, ProfileError, Unit};
-pub use report::{Counts, Difference, Dimension, FeatureReport, Leftover, OffCurve, Report, Warning};
+pub use report::{
+    Counts, Difference, Dimension, FeatureReport, Leftover, LeftoverMark, OffCurve, Report, Warning,
+};
 pub use request::{Feature, FeatureError, Options, Request, RequestError};
 pub use settings::SettingError;
 
