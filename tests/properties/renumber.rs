@@ -8,8 +8,9 @@ use rustc_hash::FxHashMap;
 use std::collections::BTreeSet;
 use welt::mark::Mark;
 use welt::mesh::{Mesh, Polygons, VertexId};
+use welt::optimise::Stop;
 
-/// Distance of vertices that count as the same, as a fraction of the size: solvers add up in another order.
+/// Distance of vertices that count as the same, as a fraction of the size: sums are taken in another order.
 const NEAR: f64 = 1e-7;
 
 /// The mesh with every vertex moved a little, so that no two ways cost the same.
@@ -84,6 +85,10 @@ pub fn result_is_the_same(case: &Case) -> Result<(), String> {
             if one.rules.iter().any(|(rule, count)| rule == "Unlike" && *count > 0) {
                 return Ok(());
             }
+            // A fit that has not converged after its steps may end elsewhere: its positions are not compared.
+            if one.fit.stop == Stop::StepLimit || two.fit.stop == Stop::StepLimit {
+                return Ok(());
+            }
             same_surface(&first.to_polygons(), &second.to_polygons(), size)
         }
         (one, two) => Err(format!("one numbering fails: {:?} {:?}", one.err(), two.err())),
@@ -100,8 +105,8 @@ fn same_surface(first: &Polygons, second: &Polygons, size: f64) -> Result<(), St
     let mut to = Vec::with_capacity(second.positions.len());
     for &p in &second.positions {
         let around = (0..27).map(|i| cell(p) + glam::I64Vec3::new(i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1));
-        let near = around.filter_map(|c| cells.get(&c)).flatten().copied();
-        let nearest = near.min_by(|&a, &b| {
+        let candidates = around.filter_map(|c| cells.get(&c)).flatten().copied();
+        let nearest = candidates.min_by(|&a, &b| {
             let distance = |v: u32| first.positions[v as usize].distance(p);
             distance(a).total_cmp(&distance(b))
         });
