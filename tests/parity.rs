@@ -123,7 +123,10 @@ fn irregular_faces_take_a_line_only_where_all_quads_are_asked_for() {
     let marks = marks(&mesh, &selectors);
     let (lines, report) = route(&mesh, &marks, Mode::AllQuad);
     assert_eq!(report.lines[0].ends, [End::Face(5), End::Face(high.0)]);
-    assert!(mesh.faces().all(|face| sides(&mesh, face, &marks, &lines) % 2 == 0), "{low:?} has 8 sides");
+    assert!(
+        mesh.faces().all(|face| sides(&mesh, face, &marks, &lines).is_multiple_of(2)),
+        "{low:?} has 8 sides"
+    );
 }
 
 #[test]

@@ -34,7 +34,7 @@ impl Marked<'_> {
     /// The marks make an even face odd.
     fn is_newly_odd(&self, face: FaceId) -> bool {
         let sides = self.sides(self.mesh.face_half_edge(face));
-        sides.len() % 2 == 0 && sides.iter().map(|side| side.1).sum::<usize>() % 2 == 1
+        sides.len().is_multiple_of(2) && sides.iter().map(|side| side.1).sum::<usize>() % 2 == 1
     }
 
     /// A line may enter an odd face, or leave it, over `h`.
@@ -136,7 +136,7 @@ pub fn lines_are_right(case: &Case) -> Result<(), String> {
         let inserted: usize = sides.map(|h| marked.lines(h) + usize::from(crossed.contains(&h.edge()))).sum();
         let is_odd = (mesh.arity(face) + inserted) % 2 == 1;
         let was_odd = mesh.arity(face) % 2 == 1;
-        let unmarked_or_odd = was_odd && inserted % 2 == 0;
+        let unmarked_or_odd = was_odd && inserted.is_multiple_of(2);
         ensure!(
             is_odd == (left.contains_key(&face) || unmarked_or_odd && !ends.contains(&face)),
             "face {} has {} sides and {inserted} vertices on them",
