@@ -113,7 +113,8 @@ extern "C" {
 #define WELT_ERROR_SYNTAX -9
 
 /*
- A rule failed, or the rules do not come to an end; the message names rule and place. The mesh is as it was before.
+ A rule failed, or the rules do not come to an end, or, where that is asked for, a mark is left that no rule handles; the
+ message names rule and place. The mesh is as it was before.
  */
 #define WELT_ERROR_RULE -10
 
@@ -208,6 +209,22 @@ extern "C" {
 #define WELT_FIT_SOLVE 2
 
 /*
+ A line of vertices between faces that the marks leave with an odd number of sides, where the way is short; one irregular
+ face each elsewhere.
+ */
+#define WELT_PARITY_AUTO 0
+
+/*
+ Lines wherever there is a way, also to triangles and pentagons, so that no new face is other than a quad.
+ */
+#define WELT_PARITY_ALL_QUAD 1
+
+/*
+ No lines: one irregular face each.
+ */
+#define WELT_PARITY_LOCAL 2
+
+/*
  Why a call failed: a code, a message of one line, and the places it speaks of. Never changes.
  */
 typedef struct welt_error welt_error;
@@ -286,9 +303,15 @@ typedef struct {
      */
     uint32_t deviation;
     /*
-     Leave it 0.
+     What is done about faces that the marks leave with an odd number of sides: one of WELT_PARITY_*. Default
+     WELT_PARITY_AUTO.
      */
-    uint32_t reserved;
+    uint32_t parity;
+    /*
+     Not 0: marks that no rule handles are an error, WELT_ERROR_RULE, whose places are the marked edges; else they
+     are kept and the report lists them. Default 0.
+     */
+    uint32_t strict;
 } welt_feature_options;
 
 /*
@@ -1052,8 +1075,8 @@ int32_t welt_feature_list(welt_report **list,
  warnings. Free it with welt_report_free.
 
  Fails with WELT_ERROR_ARGUMENT (an unknown feature or setting, a selection of another mesh, a width that an edge cannot
- take: the place is the edge), WELT_ERROR_FILE, WELT_ERROR_RULE, WELT_ERROR_CANCELLED; the mesh is as it was before then.
- Since: 0.1.
+ take: the place is the edge), WELT_ERROR_FILE, WELT_ERROR_RULE (also, when strict, for marks that no rule handles),
+ WELT_ERROR_CANCELLED; the mesh is as it was before then. Since: 0.1.
  */
 WELT_API
 int32_t welt_feature_apply(welt_mesh *mesh,

@@ -1,6 +1,6 @@
 //! `welt apply`.
 
-use super::args::{Apply, FitMethod};
+use super::args::{Apply, FitMethod, Parity};
 use super::error::Failure;
 use super::figure::{View, draw, limit_picture};
 use super::files;
@@ -11,7 +11,7 @@ use std::process::ExitCode;
 use welt::feature::{Options, ProfileError, Request, RequestError};
 use welt::grammar::RuleSet;
 use welt::io;
-use welt::mark::{Selection, Selector};
+use welt::mark::{Selection, Selector, parity};
 use welt::optimise::Method;
 use welt::surface::SAMPLES;
 
@@ -87,6 +87,12 @@ fn options(arguments: &Apply) -> Options {
             FitMethod::Loop => Method::Loop,
             FitMethod::Solve => Method::Solve,
         },
+        parity: match arguments.parity {
+            Parity::Auto => parity::Mode::Auto,
+            Parity::AllQuad => parity::Mode::AllQuad,
+            Parity::Local => parity::Mode::Local,
+        },
+        strict: arguments.strict,
         samples: if arguments.no_deviation { 0 } else { SAMPLES },
         threads: arguments.threads,
     }

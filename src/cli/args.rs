@@ -90,6 +90,16 @@ pub enum FitMethod {
     Solve,
 }
 
+#[derive(Clone, Copy, ValueEnum)]
+pub enum Parity {
+    /// A line of vertices to the border or between two of them where the way is short
+    Auto,
+    /// Lines wherever there is a way, also to triangles and pentagons of the mesh
+    AllQuad,
+    /// One irregular face each
+    Local,
+}
+
 #[derive(Args)]
 pub struct Apply {
     /// OBJ or PLY file, or - for OBJ on standard input
@@ -112,6 +122,12 @@ pub struct Apply {
     /// How to fit the changed mesh to the surface as it was
     #[arg(long, value_enum, default_value = "solve")]
     pub optimise: FitMethod,
+    /// What to do about faces that the marks leave with an odd number of sides
+    #[arg(long, value_enum, default_value = "auto")]
+    pub parity: Parity,
+    /// Fail where no rule handles a mark, instead of keeping the mark and applying the rest
+    #[arg(long)]
+    pub strict: bool,
     /// Write a report as JSON
     #[arg(long, value_name = "FILE")]
     pub report: Option<PathBuf>,

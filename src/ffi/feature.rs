@@ -12,6 +12,7 @@ use super::rules::WeltRules;
 use super::selection::WeltSelection;
 use crate::feature::{self, Profile, Request};
 use crate::job::Job;
+use crate::mark::parity;
 use crate::mesh::VertexId;
 use crate::optimise::Method;
 use crate::surface::{SAMPLES, Sampling};
@@ -34,6 +35,23 @@ pub(super) fn method(number: u32) -> Result<Method, Failure> {
     }
 }
 
+/// A line of vertices between faces that the marks leave with an odd number of sides, where the way is short; one irregular
+/// face each elsewhere.
+pub const WELT_PARITY_AUTO: u32 = 0;
+/// Lines wherever there is a way, also to triangles and pentagons, so that no new face is other than a quad.
+pub const WELT_PARITY_ALL_QUAD: u32 = 1;
+/// No lines: one irregular face each.
+pub const WELT_PARITY_LOCAL: u32 = 2;
+
+fn parity_mode(number: u32) -> Result<parity::Mode, Failure> {
+    match number {
+        WELT_PARITY_AUTO => Ok(parity::Mode::Auto),
+        WELT_PARITY_ALL_QUAD => Ok(parity::Mode::AllQuad),
+        WELT_PARITY_LOCAL => Ok(parity::Mode::Local),
+        _ => Err(Failure::argument(format!("the parity is {number}, which is no WELT_PARITY_*"))),
+    }
+}
+
 /// How a feature is applied. Set it by welt_feature_options_init, then change what differs.
 #[repr(C)]
 #[derive(Clone, Copy)]
@@ -44,18 +62,22 @@ pub struct WeltFeatureOptions {
     pub fit: u32,
     /// Not 0: measure deviations and look for thin walls; costs more than the feature. Default 0.
     pub deviation: u32,
-    /// Leave it 0.
-    pub reserved: u32,
+    /// What is done about faces that the marks leave with an odd number of sides: one of WELT_PARITY_*. Default
+    /// WELT_PARITY_AUTO.
+    pub parity: u32,
+    /// Not 0: marks that no rule handles are an error, WELT_ERROR_RULE, whose places are the marked edges; else they
+    /// are kept and the report lists them. Default 0.
+    pub strict: u32,
 }
 
-// SAFETY: `repr(C)`, four integers of four bytes.
+// SAFETY: `repr(C)`, five integers of four bytes.
 unsafe impl Options for WeltFeatureOptions {
     fn first_size() -> usize {
-        16
+        20
     }
 
     fn defaults(struct_size: u32) -> Self {
-        Self { struct_size, fit: WELT_FIT_SOLVE, deviation: 0, reserved: 0 }
+        Self { struct_size, fit: WELT_FIT_SOLVE, deviation: 0, parity: WELT_PARITY_AUTO, strict: 0 }
     }
 }
 
@@ -114,6 +136,8 @@ unsafe fn apply(
     };
     let options = feature::Options {
         method: method(options.fit)?,
+        parity: parity_mode(options.parity)?,
+        strict: options.strict != 0,
         samples: if options.deviation != 0 { SAMPLES } else { 0 },
         ..feature::Options::default()
     };
@@ -148,8 +172,8 @@ unsafe fn apply(
 /// warnings. Free it with welt_report_free.
 ///
 /// Fails with WELT_ERROR_ARGUMENT (an unknown feature or setting, a selection of another mesh, a width that an edge cannot
-/// take: the place is the edge), WELT_ERROR_FILE, WELT_ERROR_RULE, WELT_ERROR_CANCELLED; the mesh is as it was before then.
-/// Since: 0.1.
+/// take: the place is the edge), WELT_ERROR_FILE, WELT_ERROR_RULE (also, when strict, for marks that no rule handles),
+/// WELT_ERROR_CANCELLED; the mesh is as it was before then. Since: 0.1.
 #[unsafe(no_mangle)]
 #[allow(clippy::too_many_arguments)]
 pub unsafe extern "C" fn welt_feature_apply(

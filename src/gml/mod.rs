@@ -31,7 +31,7 @@ pub use source::{Diagnostic, Source, Span};
 pub use value::Value;
 
 pub(crate) use check::{Leaves, check};
-pub(crate) use compile::{compile_tokens, is_word};
+pub(crate) use compile::{Definition, compile_tokens, is_word};
 pub(crate) use lex::{Cursor, script};
 
 /// Names of the words of the language, in the order of the reference.

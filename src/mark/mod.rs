@@ -7,6 +7,7 @@
 mod curve;
 mod file;
 mod orient;
+pub mod parity;
 mod path;
 mod resolve;
 mod selector;

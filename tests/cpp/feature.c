@@ -234,6 +234,17 @@ static void mistakes(void) {
     options.fit = 9;
     status = groove(mesh, selection, "width=0.2", &options, NULL, &error);
     refused(status, WELT_ERROR_ARGUMENT, error, "WELT_FIT_", mesh);
+    options.fit = WELT_FIT_SOLVE;
+    options.parity = 3;
+    status = groove(mesh, selection, "width=0.2", &options, NULL, &error);
+    refused(status, WELT_ERROR_ARGUMENT, error, "WELT_PARITY_", mesh);
+    options.parity = WELT_PARITY_ALL_QUAD;
+    options.strict = 1;
+    check(welt_selection_create(mesh, "edge:0,1 edge:1,10#piping", NUL, &none, NULL) == WELT_OK, "unlike marks");
+    status = groove(mesh, none, "width=0.2", &options, NULL, &error);
+    check(welt_error_place_count(error) == 2 && welt_error_place_kind(error, 0) == WELT_PLACE_EDGE, "marked edges");
+    refused(status, WELT_ERROR_RULE, error, "no rule handles", mesh);
+    welt_selection_free(none);
 
     check(welt_rules_linear(&rules, NULL) == WELT_OK, "linear rules");
     status = welt_rules_apply(mesh, selection, rules, "no_such_thing=1", NUL, NULL, NULL, NULL, &error);
