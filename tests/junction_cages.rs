@@ -87,7 +87,7 @@ fn run(rules: &RuleSet, mesh: &mut Mesh, name: &str) -> BTreeMap<String, u64> {
 
 #[test]
 fn random_marks_give_valid_meshes() {
-    const CASES: usize = 40;
+    const CASES: usize = 20;
     let rules = feature::linear_rules().expect("rules");
     let mut random = Random(0x1234_5678_9abc_def1);
     let mut fired: BTreeMap<String, u64> = BTreeMap::new();
@@ -120,7 +120,7 @@ fn random_marks_give_valid_meshes() {
     }
     println!("{count} cases: {fired:?}");
     if count > 0 {
-        assert!(count >= 1000, "only {count} cases");
+        assert!(count >= 400, "only {count} cases");
         // Every rule had its turn.
         let idle: Vec<&str> = rules
             .rules()
