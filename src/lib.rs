@@ -22,3 +22,4 @@ pub mod optimise;
 pub mod picture;
 pub mod subdivision;
 pub mod surface;
+mod threads;

@@ -10,6 +10,7 @@
 mod arguments;
 mod boundary;
 mod error;
+mod evaluate;
 mod failure;
 mod feature;
 mod file;
@@ -18,6 +19,9 @@ mod limit;
 mod loop_surface;
 mod mesh;
 mod options;
+mod query;
+#[cfg(test)]
+mod query_tests;
 mod refinement;
 mod report;
 mod rules;
@@ -30,12 +34,14 @@ mod tests;
 mod version;
 
 pub use error::*;
+pub use evaluate::*;
 pub use feature::*;
 pub use file::*;
 pub use job::*;
 pub use limit::*;
 pub use loop_surface::*;
 pub use mesh::*;
+pub use query::*;
 pub use refinement::*;
 pub use report::*;
 pub use rules::*;

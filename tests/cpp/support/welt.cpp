@@ -78,8 +78,18 @@ std::vector<Jet> evaluate(Mesh const& mesh, std::vector<std::uint32_t> const& fa
     welt_surface* made = nullptr;
     require(welt_surface_create(mesh.get(), faces.data(), faces.size(), &made, &error), error);
     Surface const surface(made);
-    require(welt_surface_evaluate(made, faces.data(), corners.data(), parameters.data(), faces.size(),
+    require(welt_surface_evaluate(made, faces.data(), corners.data(), parameters.data(), faces.size(), 2, nullptr,
                                &jets.data()->position.x, 18 * jets.size(), &error),
+            error);
+    return jets;
+}
+
+std::vector<Jet> evaluate_loop(Mesh const& mesh, std::vector<std::uint32_t> const& faces,
+                               std::vector<double> const& parameters) {
+    std::vector<Jet> jets(faces.size());
+    welt_error* error = nullptr;
+    require(welt_mesh_loop_evaluate(mesh.get(), faces.data(), parameters.data(), faces.size(), 2, nullptr,
+                                    &jets.data()->position.x, 18 * jets.size(), &error),
             error);
     return jets;
 }
