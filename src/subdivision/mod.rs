@@ -1,4 +1,4 @@
-//! Catmull-Clark subdivision: refinement, limit masks, evaluation. Loop subdivision: refinement and limit masks.
+//! Catmull-Clark and Loop subdivision: refinement, limit masks, evaluation.
 //!
 //! The boundary follows the cubic B-spline of its control points ("edge only" in OpenSubdiv's terms): a boundary
 //! vertex moves to (1, 6, 1)/8 of itself and its boundary neighbours, a boundary edge is halved, and a corner of a
@@ -23,7 +23,7 @@ pub(crate) mod patch;
 pub(crate) mod patch_bicubic;
 pub(crate) mod patch_corner;
 pub(crate) mod patch_direct;
-mod patch_ring;
+pub(crate) mod patch_ring;
 mod positions;
 mod refinement;
 mod ring;

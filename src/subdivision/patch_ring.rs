@@ -465,7 +465,10 @@ impl Ring {
                     fans[prev].edge_point_at(self.creasing, -1),
                 ],
             };
-            corner.recentre();
+            // The grid of a regular one is taken as it is.
+            if corner.spokes.len() != 4 {
+                corner.recentre();
+            }
             corner
         }))
     }

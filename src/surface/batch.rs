@@ -1,11 +1,11 @@
 //! Evaluation of many points at once.
 
-use super::kernel::{self, Derivatives};
+use super::kernel::{self, Derivatives, Four, Plain};
 use super::places::{Entry, Located};
 use super::{Jet, LimitSurface};
 use crate::mesh::FaceId;
 use crate::subdivision::SurfacePoint;
-use pulp::{Arch, NullaryFnOnce};
+use pulp::NullaryFnOnce;
 use std::hint::black_box;
 use std::ops::Range;
 
@@ -42,24 +42,40 @@ impl LimitSurface {
         at: impl Fn(usize) -> Parameter,
         sink: impl FnMut(usize, &[f64]),
     ) {
-        let arch = Arch::new();
         match derivatives {
-            Derivatives::None => arch.dispatch(Batch::<0, _, _> { surface: self, points, at, sink }),
-            Derivatives::First => arch.dispatch(Batch::<1, _, _> { surface: self, points, at, sink }),
-            Derivatives::Second => arch.dispatch(Batch::<2, _, _> { surface: self, points, at, sink }),
+            Derivatives::None => self.run::<0, _, _>(points, at, sink),
+            Derivatives::First => self.run::<1, _, _>(points, at, sink),
+            Derivatives::Second => self.run::<2, _, _>(points, at, sink),
         }
+    }
+
+    fn run<const ORDER: usize, A: Fn(usize) -> Parameter, S: FnMut(usize, &[f64])>(
+        &self,
+        points: Range<usize>,
+        at: A,
+        sink: S,
+    ) {
+        #[cfg(target_arch = "x86_64")]
+        if let Some(four) = pulp::x86::V3::try_new() {
+            return pulp::Simd::vectorize(
+                four,
+                Batch::<ORDER, _, _, _> { surface: self, four, points, at, sink },
+            );
+        }
+        Batch::<ORDER, _, _, _> { surface: self, four: Plain, points, at, sink }.call();
     }
 }
 
-struct Batch<'a, const ORDER: usize, A, S> {
+struct Batch<'a, const ORDER: usize, F, A, S> {
     surface: &'a LimitSurface,
+    four: F,
     points: Range<usize>,
     at: A,
     sink: S,
 }
 
-impl<const ORDER: usize, A: Fn(usize) -> Parameter, S: FnMut(usize, &[f64])> NullaryFnOnce
-    for Batch<'_, ORDER, A, S>
+impl<const ORDER: usize, F: Four, A: Fn(usize) -> Parameter, S: FnMut(usize, &[f64])> NullaryFnOnce
+    for Batch<'_, ORDER, F, A, S>
 {
     type Output = ();
 
@@ -78,7 +94,7 @@ impl<const ORDER: usize, A: Fn(usize) -> Parameter, S: FnMut(usize, &[f64])> Nul
             for (i, place) in places.iter().take(count).enumerate() {
                 let mut values = [0.0; 18];
                 match place {
-                    Some(place) => self.surface.write::<ORDER>(place, &mut values),
+                    Some(place) => self.surface.write::<ORDER, F>(self.four, place, &mut values),
                     None => values.fill(f64::NAN),
                 }
                 (self.sink)(first + i, &values[..3 * [1, 3, 6][ORDER]]);
@@ -112,14 +128,16 @@ impl LimitSurface {
     }
 
     #[inline(always)]
-    fn write<const ORDER: usize>(&self, place: &Located, values: &mut [f64; 18]) {
+    fn write<const ORDER: usize, F: Four>(&self, four: F, place: &Located, values: &mut [f64; 18]) {
         let jet = match place.entry {
-            Entry::Corner { corner, .. } => match self.corners.jet::<ORDER>(corner, place.u, place.v) {
-                Some(jet) => jet,
-                None => return write_point(self.evaluate_located(place), values),
-            },
+            Entry::Corner { corner, .. } => {
+                match self.corners.jet::<ORDER, F>(four, corner, place.u, place.v) {
+                    Some(jet) => jet,
+                    None => return write_point(self.evaluate_located(place), values),
+                }
+            }
             Entry::Regular(piece) | Entry::Split(piece) => {
-                kernel::jet::<ORDER>(&self.bicubics[piece as usize], place.u, place.v)
+                kernel::jet::<ORDER, F>(four, &self.bicubics[piece as usize], place.u, place.v)
             }
         };
         write_jet(&place.in_patch(jet), values);

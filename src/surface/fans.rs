@@ -1,6 +1,6 @@
 //! The points round extraordinary vertices, held once per vertex however many faces meet there.
 
-use super::kernel;
+use super::kernel::{self, Four};
 use super::valence::{LEVELS, Tables};
 use super::{Corner, Jet};
 use crate::mesh::{HalfEdgeId, Mesh};
@@ -175,7 +175,13 @@ impl Corners {
 
     /// A corner at (u, v) by the table of its valence; `None` where there is none for it, and at the vertex and close to it.
     #[inline(always)]
-    pub(super) fn jet<const ORDER: usize>(&self, index: u32, mut u: f64, mut v: f64) -> Option<Jet> {
+    pub(super) fn jet<const ORDER: usize, F: Four>(
+        &self,
+        four: F,
+        index: u32,
+        mut u: f64,
+        mut v: f64,
+    ) -> Option<Jet> {
         let entry = &self.entries[index as usize];
         let fan = &self.fans[entry.fan as usize];
         let table = self.tables.get(fan.table as usize)?;
@@ -193,11 +199,12 @@ impl Corners {
             let [spokes, diagonals] = [spokes, diagonals].map(|points| points.split_at_checked(home));
             let ((s, first_s), (d, first_d)) = (spokes?, diagonals?);
             let bicubic = table.piece(
+                four,
                 level,
                 side,
                 [std::slice::from_ref(&fan.vertex), first_s, s, first_d, d, &entry.outer],
             );
-            let mut jet = kernel::jet::<ORDER>(&bicubic, a, b).scaled(scale);
+            let mut jet = kernel::jet::<ORDER, F>(four, &bicubic, a, b).scaled(scale);
             jet.position += fan.origin;
             return Some(jet);
         }

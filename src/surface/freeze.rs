@@ -6,6 +6,7 @@ use super::{Bicubic, LimitSurface, Patch};
 use crate::mesh::{FaceId, Mesh};
 use crate::subdivision::has_limit;
 use crate::subdivision::patch_direct::{Direct, is_smooth};
+use crate::subdivision::patch_ring::Ring;
 use crate::subdivision::sharpness::is_infinite;
 use glam::DVec3;
 use std::sync::OnceLock;
@@ -43,7 +44,7 @@ pub(super) fn freeze(mesh: &Mesh, faces: Vec<FaceId>) -> LimitSurface {
 impl Freezing {
     fn add_face(&mut self, mesh: &Mesh, faces: &[FaceId], face: FaceId) {
         let first = self.surface.patches.len();
-        match self.direct(mesh, face) {
+        match self.smooth_quad(mesh, face) {
             Some(entry) => self.surface.patches.push(entry),
             None => {
                 for patch in Patch::of_face(mesh, face) {
@@ -60,18 +61,32 @@ impl Freezing {
         }
     }
 
-    /// The patch of a face that is taken from the mesh as it is.
-    fn direct(&mut self, mesh: &Mesh, face: FaceId) -> Option<Entry> {
+    /// The patch of a quad inside the surface round which nothing is sharp.
+    fn smooth_quad(&mut self, mesh: &Mesh, face: FaceId) -> Option<Entry> {
         if !is_smooth(mesh, face) {
             return None;
         }
-        match Direct::new(mesh, face)? {
-            Direct::Regular(grid) => Some(self.add_bicubic(Bicubic::from_bspline(&grid))),
-            Direct::Corner { corner, half_edge, outer } => {
-                let index = self.surface.corners.add_at_vertex(mesh, half_edge, outer, &mut self.shared)?;
-                Some(self.corner_entry(index, corner))
+        match Direct::new(mesh, face) {
+            Some(Direct::Regular(grid)) => return Some(self.add_bicubic(Bicubic::from_bspline(&grid))),
+            Some(Direct::Corner { corner, half_edge, outer }) => {
+                if let Some(index) =
+                    self.surface.corners.add_at_vertex(mesh, half_edge, outer, &mut self.shared)
+                {
+                    return Some(self.corner_entry(index, corner));
+                }
             }
+            None => {}
         }
+        let quarters = Ring::new(mesh, face)?.smooth_quarters()?;
+        let entries = quarters.map(|quarter| match quarter.regular_grid() {
+            Some(grid) => self.add_bicubic(Bicubic::from_bspline(&grid)),
+            None => {
+                let index = self.surface.corners.add(quarter, &mut self.shared);
+                self.corner_entry(index, 0)
+            }
+        });
+        self.surface.parts.extend(entries);
+        Some(Entry::Split(self.surface.parts.len() as u32 - 4))
     }
 
     /// Recursion is as deep as patches are split, 12 levels at most.

@@ -1,9 +1,16 @@
 //! A frozen limit surface: evaluation, line hits, closest points, deviation.
 //!
-//! [`LimitSurface`] takes what it needs from the mesh and does not change when the mesh does. Every face is held as
-//! bicubic pieces; beside an extraordinary vertex some levels of pieces are stored and deeper ones are made when a
-//! query gets there, so results are those of the true limit surface everywhere. Parameters (face, corner, u, v) are
-//! those of [`evaluate`](crate::subdivision::evaluate).
+//! [`LimitSurface`] takes what it needs from the mesh and does not change when the mesh does. Regular faces are held as
+//! bicubics (384 bytes each). A quad with an extraordinary corner is held as its control points, of which those round the
+//! corner are held once for all quads there: memory at a vertex of valence n grows with n. They are evaluated by tables per
+//! valence, up to 16, of the first six refinements, and refined level by level below and for other corners: exact
+//! everywhere. What queries search (four levels of bicubics beside extraordinary vertices, and a tree) is made at the
+//! first query. Parameters (face, corner, u, v) are those of [`evaluate`](crate::subdivision::evaluate).
+//!
+//! Degenerate queries have defined results. A point or line with a coordinate that is not finite, and a direction that is zero,
+//! find nothing. Of equally close points one is found. A line through a vertex or along an edge hits it once per crossing; a
+//! tangent line hits where it comes within the rounding of the surface; a line inside the surface gives some of the
+//! points they share.
 
 mod batch;
 mod closest;
@@ -35,6 +42,7 @@ use crate::subdivision::patch_corner::Corner;
 use fans::Corners;
 use glam::DVec3;
 use index::Index;
+use kernel::Plain;
 use places::{Entry, FaceTable, Located, PatchPlace};
 use std::sync::OnceLock;
 
@@ -117,16 +125,19 @@ impl LimitSurface {
     fn evaluate_located(&self, located: &Located) -> SurfacePoint {
         let mut found = match located.entry {
             Entry::Corner { corner, .. } => self.evaluate_corner(corner, located.u, located.v),
-            Entry::Regular(piece) | Entry::Split(piece) => {
-                Evaluated::regular(kernel::jet::<2>(&self.bicubics[piece as usize], located.u, located.v))
-            }
+            Entry::Regular(piece) | Entry::Split(piece) => Evaluated::regular(kernel::jet::<2, Plain>(
+                Plain,
+                &self.bicubics[piece as usize],
+                located.u,
+                located.v,
+            )),
         };
         found.jet = located.in_patch(found.jet);
         found.into()
     }
 
     fn evaluate_corner(&self, corner: u32, u: f64, v: f64) -> Evaluated {
-        match self.corners.jet::<2>(corner, u, v) {
+        match self.corners.jet::<2, Plain>(Plain, corner, u, v) {
             Some(jet) => Evaluated::regular(jet),
             None => self.corners.evaluate(corner, u, v),
         }

@@ -5,7 +5,7 @@
 //! serves the same points. Weights are for points relative to the limit position of the vertex, and so are the results: near
 //! the vertex they keep their relative precision.
 
-use super::kernel::{Lanes, accumulate, point};
+use super::kernel::{Four, accumulate, point};
 use super::{Bicubic, Corner};
 use crate::subdivision::patch_corner::{Points, Tip};
 use glam::DVec3;
@@ -84,21 +84,27 @@ impl Table {
 
     /// A piece: side `side` after `level` + 1 refinements, from the points in the order of the rows.
     #[inline(always)]
-    pub(super) fn piece(&self, level: usize, side: usize, points: [&[DVec3]; 6]) -> Bicubic {
+    pub(super) fn piece<F: Four>(
+        &self,
+        four: F,
+        level: usize,
+        side: usize,
+        points: [&[DVec3]; 6],
+    ) -> Bicubic {
         let rows = &self.weights[(3 * level + side) * self.points..][..self.points];
-        let mut halves = [[Lanes::default(); 8]; 2];
+        let mut halves = [[four.of([0.0; 4]); 8]; 2];
         for (half, sums) in halves.iter_mut().enumerate() {
             let mut rows = rows;
             for part in points {
                 let (here, rest) = rows.split_at(part.len().min(rows.len()));
                 rows = rest;
                 for (row, point) in here.iter().zip(part) {
-                    accumulate(sums, &row[half], point);
+                    accumulate(four, sums, &row[half], point);
                 }
             }
         }
         let [low, high] = halves;
-        let row = |p: &[Lanes]| [point(p[0]), point(p[1]), point(p[2]), point(p[3])];
+        let row = |p: &[F::Value]| [0, 1, 2, 3].map(|i| point(four.numbers(p[i])));
         Bicubic { points: [row(&low[..4]), row(&low[4..]), row(&high[..4]), row(&high[4..])] }
     }
 }
