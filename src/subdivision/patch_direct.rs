@@ -6,6 +6,7 @@ use crate::mesh::{FaceId, HalfEdgeId, Mesh, VertexId};
 use glam::DVec3;
 
 /// The patch of a quad.
+#[expect(clippy::large_enum_variant, reason = "it lives for one call")]
 pub(crate) enum Direct {
     /// Its control grid.
     Regular(Grid),

@@ -241,7 +241,8 @@ impl Search<'_> {
         let back = self.frame.transpose();
         let normal = back * crossing.normal;
         let counts = along >= self.first && along <= self.last && along.abs() <= self.reach;
-        if !counts || self.compatible.is_some_and(|direction| !(normal.dot(direction) > 0.0)) {
+        let compatible = self.compatible.is_none_or(|direction| normal.dot(direction) > 0.0);
+        if !counts || !compatible {
             return;
         }
         if self.nearest {
