@@ -35,14 +35,14 @@ struct Box {
         high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
     }
     double distance_to(Vector const& p) const {
-        auto const gap = [](double low, double high, double x) { return std::max({low - x, x - high, 0.0}); };
+        auto const gap = [](double from, double to, double x) { return std::max({from - x, x - to, 0.0}); };
         return length(Vector{gap(low.x, high.x, p.x), gap(low.y, high.y, p.y), gap(low.z, high.z, p.z)});
     }
     bool meets(Vector const& o, Vector const& d) const {
         double enter = -1e300, leave = 1e300;
-        auto const slab = [&](double low, double high, double o, double d) {
-            if (d == 0) return low <= o && o <= high;
-            double const a = (low - o) / d, b = (high - o) / d;
+        auto const slab = [&](double from, double to, double start, double way) {
+            if (way == 0) return from <= start && start <= to;
+            double const a = (from - start) / way, b = (to - start) / way;
             enter = std::max(enter, std::min(a, b));
             leave = std::min(leave, std::max(a, b));
             return true;
