@@ -23,3 +23,4 @@ pub mod optimise;
 pub mod picture;
 pub mod subdivision;
 pub mod surface;
+mod threads;

@@ -57,6 +57,8 @@ fn header_is_up_to_date() {
         "rules",
         "feature",
         "surface",
+        "evaluate",
+        "query",
     ] {
         builder = builder.with_src(root().join("src/ffi").join(section).with_extension("rs"));
     }

@@ -10,6 +10,7 @@
 mod arguments;
 mod boundary;
 mod error;
+mod evaluate;
 mod failure;
 #[cfg(feature = "fault-injection")]
 mod fault;
@@ -20,6 +21,9 @@ mod limit;
 mod loop_surface;
 mod mesh;
 mod options;
+mod query;
+#[cfg(test)]
+mod query_tests;
 mod refinement;
 mod report;
 mod rules;
@@ -32,6 +36,7 @@ mod tests;
 mod version;
 
 pub use error::*;
+pub use evaluate::*;
 #[cfg(feature = "fault-injection")]
 pub use fault::*;
 pub use feature::*;
@@ -40,6 +45,7 @@ pub use job::*;
 pub use limit::*;
 pub use loop_surface::*;
 pub use mesh::*;
+pub use query::*;
 pub use refinement::*;
 pub use report::*;
 pub use rules::*;

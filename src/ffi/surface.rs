@@ -1,6 +1,6 @@
 //! `welt_surface`.
 
-use super::arguments::{self, Buffer, Output};
+use super::arguments::{self, Output};
 use super::boundary::boundary;
 use super::error::WeltError;
 use super::failure::Failure;
@@ -8,16 +8,13 @@ use super::feature::method;
 use super::job::WeltJob;
 use super::mesh::{WeltMesh, mesh_of};
 use super::report::{WeltReport, hand_over};
-use crate::fault;
 use crate::job::Job;
 use crate::mesh::{FaceId, VertexId};
 use crate::optimise::{self, Target};
-use crate::subdivision::SurfacePoint;
-use glam::DVec3;
 
 /// A limit surface, frozen: it stays as it is when its mesh changes. Never changes.
 pub struct WeltSurface {
-    target: Target,
+    pub(super) target: Target,
 }
 
 /// Freezes the limit surface of a mesh.
@@ -65,82 +62,6 @@ pub unsafe extern "C" fn welt_surface_create(
 pub unsafe extern "C" fn welt_surface_free(surface: *mut WeltSurface) {
     // SAFETY: the header asks for NULL or a surface that was not freed.
     unsafe { arguments::free(surface) };
-}
-
-/// Evaluates the limit surface at parameters of faces.
-///
-/// surface: must not be NULL.
-/// faces: the face of each point.
-/// corners: the patch of each point; NULL for 0 everywhere. A quad has patch 0 only, another face one per corner.
-/// parameters: u and v of each point, in [0, 1]; what lies outside is moved to the nearest inside. On a quad (0, 0) is its
-/// first corner, u runs along the first edge and v against the last one. On patch c of another face (0, 0) is corner c,
-/// (1, 0) the middle of the edge that leaves it, (0, 1) that of the edge that arrives, (1, 1) the face point.
-/// count: number of points.
-/// values: receives per point the position, the derivatives by u and by v, and those by u twice, by u and v, by v twice: 18
-/// doubles. At an extraordinary vertex the first derivatives are tangents of conventional length, and the second ones,
-/// which are not defined, are NaN. Where the surface has no part of the face, which may not have been frozen or is a hole
-/// or left out by the boundary rule, all are NaN.
-/// capacity: room in values, at least 18 * count doubles.
-///
-/// Fails with WELT_ERROR_ARGUMENT where a face has no such patch, or a parameter is NaN. Since: 0.1.
-#[unsafe(no_mangle)]
-#[allow(clippy::too_many_arguments)]
-pub unsafe extern "C" fn welt_surface_evaluate(
-    surface: *const WeltSurface,
-    faces: *const u32,
-    corners: *const u32,
-    parameters: *const f64,
-    count: usize,
-    values: *mut f64,
-    capacity: usize,
-    error: *mut *mut WeltError,
-) -> i32 {
-    let body = || {
-        let too_large = || Failure::argument(format!("count is {count}, which is too large"));
-        let needed = count.checked_mul(18).ok_or_else(too_large)?;
-        // SAFETY: the header asks for a living surface, arrays of this count and a buffer of this capacity.
-        let (surface, faces, parameters, buffer) = unsafe {
-            (
-                arguments::handle(surface, "surface")?,
-                arguments::array(faces, count, "faces")?,
-                arguments::array(parameters, 2 * count, "parameters")?,
-                Buffer::new(values, capacity, needed, "values")?,
-            )
-        };
-        let corners = if corners.is_null() {
-            &[]
-        } else {
-            // SAFETY: not NULL; the header asks for an array of this count.
-            unsafe { arguments::array(corners, count, "corners") }?
-        };
-        let surface = &surface.target.surface;
-        let mut found = Vec::with_capacity(count);
-        for (i, (&face, uv)) in faces.iter().zip(parameters.chunks_exact(2)).enumerate() {
-            let corner = corners.get(i).copied().unwrap_or(0) as usize;
-            let patches = surface.patch_count(FaceId(face));
-            if patches > 0 && corner >= patches {
-                return Err(Failure::argument(format!("face {face} has no patch {corner}")));
-            }
-            if uv.iter().any(|parameter| parameter.is_nan()) {
-                return Err(Failure::argument(format!("a parameter of point {i} is NaN")));
-            }
-            fault::point("evaluate");
-            found.push(jet(surface.evaluate(FaceId(face), corner, uv[0], uv[1])));
-        }
-        buffer.fill(found.iter().flatten().flat_map(|vector| vector.to_array()));
-        Ok(())
-    };
-    // SAFETY: the header asks for NULL or a place for an error.
-    unsafe { boundary(error, body) }
-}
-
-/// Position, first and second derivatives; NaN for what is not defined.
-fn jet(point: Option<SurfacePoint>) -> [DVec3; 6] {
-    let nowhere = DVec3::NAN;
-    point.map_or([nowhere; 6], |point| {
-        let [uu, uv, vv] = point.second.map_or([nowhere; 3], |second| [second.uu, second.uv, second.vv]);
-        [point.position, point.du, point.dv, uu, uv, vv]
-    })
 }
 
 /// Moves vertices so that their limit points lie on a frozen surface.

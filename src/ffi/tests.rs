@@ -393,19 +393,22 @@ fn sharpness_and_evaluation_check_their_arguments() {
         assert_eq!(welt_surface_create(mesh, null(), 0, null(), &mut surface, null_mut()), WELT_OK);
         let (faces, corners, parameters) = ([0u32, 2], [0u32, 1], [0.0f64, 0.0, 0.5, 0.5]);
         let (f, c, p) = (faces.as_ptr(), corners.as_ptr(), parameters.as_ptr());
-        assert_eq!(welt_surface_evaluate(surface, f, c, p, 2, out, 35, &mut error), WELT_ERROR_BUFFER);
+        assert_eq!(
+            welt_surface_evaluate(surface, f, c, p, 2, 2, null(), out, 35, &mut error),
+            WELT_ERROR_BUFFER
+        );
         take(&mut error);
-        assert_eq!(welt_surface_evaluate(surface, f, c, p, 2, out, 36, null_mut()), WELT_OK);
+        assert_eq!(welt_surface_evaluate(surface, f, c, p, 2, 2, null(), out, 36, null_mut()), WELT_OK);
         assert_eq!(values[..3], TETRAHEDRON[..3]);
         assert!(values[18..].iter().all(|value| value.is_nan()));
         assert_eq!(
-            welt_surface_evaluate(surface, f, [3, 0].as_ptr(), p, 2, out, 36, &mut error),
+            welt_surface_evaluate(surface, f, [3, 0].as_ptr(), p, 2, 2, null(), out, 36, &mut error),
             WELT_ERROR_ARGUMENT
         );
         assert_eq!(take(&mut error).1, "face 0 has no patch 3");
         let nowhere = [f64::NAN; 4];
         assert_eq!(
-            welt_surface_evaluate(surface, f, c, nowhere.as_ptr(), 2, out, 36, &mut error),
+            welt_surface_evaluate(surface, f, c, nowhere.as_ptr(), 2, 2, null(), out, 36, &mut error),
             WELT_ERROR_ARGUMENT
         );
         assert!(take(&mut error).1.contains("NaN"));

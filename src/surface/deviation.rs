@@ -6,13 +6,12 @@
 use super::LimitSurface;
 use crate::job::{Cancelled, Job};
 use crate::mesh::{FaceId, Mesh};
+use crate::threads::in_ranges;
 use glam::DVec3;
 use serde::Serialize;
 
 /// The usual number of samples per side of a face.
 pub const SAMPLES: usize = 8;
-/// More threads than this are not started.
-const MOST_THREADS: usize = 64;
 /// Distances below this share of the size are looked for along the normal first.
 const NEAR: f64 = 0.1;
 
@@ -103,21 +102,12 @@ pub fn deviation_samples(
     job: &Job,
 ) -> Result<Vec<DeviationSample>, Cancelled> {
     let faces: Vec<FaceId> = from.faces().filter(|&face| choose(face)).collect();
-    let available = || std::thread::available_parallelism().map_or(1, usize::from);
-    let threads = if sampling.threads == 0 { available() } else { sampling.threads };
-    let chunk = faces.len().div_ceil(threads.clamp(1, MOST_THREADS)).max(1);
-    let work = |faces: &[FaceId]| sample_faces(from, faces, to, sampling.per_side, job);
-    if chunk >= faces.len() {
-        return work(&faces);
-    }
-    let parts = std::thread::scope(|scope| {
-        let workers: Vec<_> = faces.chunks(chunk).map(|faces| scope.spawn(move || work(faces))).collect();
-        workers.into_iter().map(|worker| worker.join()).collect::<Vec<_>>()
-    });
+    let work = |range: std::ops::Range<usize>| {
+        sample_faces(from, faces.get(range).unwrap_or_default(), to, sampling.per_side, job)
+    };
     let mut samples = Vec::new();
-    for part in parts {
-        // A panic in a worker goes on in the caller's thread.
-        samples.extend(part.unwrap_or_else(|panic| std::panic::resume_unwind(panic))?);
+    for part in in_ranges(faces.len(), sampling.threads, 1, work) {
+        samples.append(&mut part?);
     }
     Ok(samples)
 }
@@ -155,7 +145,10 @@ fn sample_faces(
 fn distance_to(to: &LimitSurface, point: DVec3, normal: DVec3) -> Option<f64> {
     let foot = to
         .nearest_line_hit(point, normal, NEAR * to.size(), normal)
-        .and_then(|hit| to.foot_near(&hit, point).filter(|foot| foot.distance <= hit.s.abs()))
+        .and_then(|hit| {
+            to.foot_near(hit.face, hit.corner, hit.u, hit.v, point)
+                .filter(|foot| foot.distance <= hit.s.abs())
+        })
         .filter(|foot| foot.normal.dot(normal) > 0.0);
     match foot {
         Some(foot) => Some(foot.distance.copysign((point - foot.position).dot(foot.normal))),

@@ -34,5 +34,8 @@ LoopLimit loop_limit(Mesh const& mesh);
 // Parameters are two per point.
 std::vector<Jet> evaluate(Mesh const& mesh, std::vector<std::uint32_t> const& faces,
                           std::vector<std::uint32_t> const& corners, std::vector<double> const& parameters);
+// The same on the Loop surface of a triangle mesh.
+std::vector<Jet> evaluate_loop(Mesh const& mesh, std::vector<std::uint32_t> const& faces,
+                               std::vector<double> const& parameters);
 std::vector<Vector> limit_positions(Mesh const& mesh);
 std::vector<Vector> limit_normals(Mesh const& mesh);
