@@ -45,7 +45,7 @@ fn limit_points_come_back_to_the_surface() {
     let faces: Vec<FaceId> = mesh.grow_faces(&mesh.grow_faces(&[FaceId(200), FaceId(300), FaceId(500)]));
     let everything = mesh.grow_faces(&mesh.grow_faces(&faces));
     let target = Target::freeze(&mesh, &everything);
-    let active = active_set(&mesh, &faces);
+    let active = active_set(&mesh, &faces, Method::Solve);
     for method in [Method::Solve, Method::Loop] {
         let mut pushed = mesh.clone();
         push(&mut pushed, &active, 0.05 * target.reach);

@@ -86,6 +86,8 @@ fn options(arguments: &Apply) -> Options {
             FitMethod::None => Method::None,
             FitMethod::Loop => Method::Loop,
             FitMethod::Solve => Method::Solve,
+            FitMethod::Fit => Method::Fit,
+            FitMethod::FitSlide => Method::FitSlide,
         },
         samples: if arguments.no_deviation { 0 } else { SAMPLES },
         threads: arguments.threads,

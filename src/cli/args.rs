@@ -88,6 +88,11 @@ pub enum FitMethod {
     Loop,
     /// The sparse system that iteration converges to
     Solve,
+    /// Least squares of distance and slope over the surface
+    Fit,
+    /// The same; vertices that were there before may slide along the surface
+    #[value(name = "fit+slide")]
+    FitSlide,
 }
 
 #[derive(Args)]

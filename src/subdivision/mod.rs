@@ -6,6 +6,8 @@
 //! ([`Mesh::subdivision`](crate::mesh::Mesh::subdivision)). Creases, corners and darts are those of OpenSubdiv
 //! (DeRose, Kass, Truong 1998; Hoppe et al. 1994), semi-sharp or infinitely sharp.
 
+pub(crate) mod basis;
+mod curvature;
 mod dart;
 mod evaluate;
 mod exceptions;
@@ -28,6 +30,7 @@ pub(crate) mod sharpness;
 mod tests;
 mod topology;
 
+pub use curvature::Curvature;
 pub use evaluate::{SecondDerivatives, SurfacePoint, evaluate};
 pub use limit::{LimitPoint, limit_normal, limit_point, limit_points, limit_position, limit_positions};
 pub use loop_refine::{LoopSurface, NotTriangles};

@@ -141,20 +141,26 @@ impl LimitSurface {
         found
     }
 
-    /// The distance of `point` to the surface, positive on the side of its normals.
-    ///
-    /// That to the closest point, unless its normal is opposite to `normal`: then a foot whose normal has an angle
-    /// below 90 degrees counts, so that a thin wall does not snap to its other side, if there is one at most ten times
-    /// as far away (else the point belongs to a small fold). `None` when the surface is empty or a coordinate is not
-    /// finite.
+    /// The distance of `point` to the surface, positive on the side of its normals: that to its
+    /// [`compatible_foot`](Self::compatible_foot). `None` when the surface is empty or a coordinate is not finite.
     pub fn signed_distance(&self, point: DVec3, normal: DVec3) -> Option<f64> {
-        const FARTHER: f64 = 10.0;
-        let mut foot = self.closest(point, &ClosestOptions::default())?;
-        if foot.normal.dot(normal) <= 0.0 {
-            let facing = Some(Facing { normal, min_cosine: 0.0 });
-            let radius = FARTHER * foot.distance;
-            foot = self.closest(point, &ClosestOptions { radius, facing }).unwrap_or(foot);
-        }
+        let foot = self.compatible_foot(point, normal)?;
         Some(foot.distance.copysign((point - foot.position).dot(foot.normal)))
+    }
+
+    /// The point of the surface that belongs to `point`, which lies on another surface with `normal`.
+    ///
+    /// The closest point, unless its normal is opposite to `normal`: then a foot whose normal has an angle below 90
+    /// degrees counts, so that a thin wall does not snap to its other side, if there is one at most ten times as far
+    /// away (else the point belongs to a small fold). `None` when the surface is empty or a coordinate is not finite.
+    pub fn compatible_foot(&self, point: DVec3, normal: DVec3) -> Option<Foot> {
+        const FARTHER: f64 = 10.0;
+        let foot = self.closest(point, &ClosestOptions::default())?;
+        if foot.normal.dot(normal) > 0.0 {
+            return Some(foot);
+        }
+        let facing = Some(Facing { normal, min_cosine: 0.0 });
+        let radius = FARTHER * foot.distance;
+        Some(self.closest(point, &ClosestOptions { radius, facing }).unwrap_or(foot))
     }
 }
