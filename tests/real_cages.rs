@@ -157,11 +157,19 @@ fn depth_zero(data: &std::path::Path, methods: &[Method], step: usize) -> Vec<Ro
             row.closer[0].push(none.max / d.max);
             row.closer[1].push(none.rms / d.rms);
             let lengths = [d.max, d.rms, d.p95].map(|length| length / ring.edge);
-            row.deviation.iter_mut().zip(lengths.into_iter().chain([d.normal])).for_each(|(all, x)| all.push(x));
+            row.deviation
+                .iter_mut()
+                .zip(lengths.into_iter().chain([d.normal]))
+                .for_each(|(all, x)| all.push(x));
             row.curvature.push(d.curvature_rms / none.curvature_rms);
             row.time.push(time);
             if d.rms > none.rms {
-                println!("{name}, ring of {:?}: {} is {:.2} times as far off as none", ring.selection.marks[0].half_edge, row.method.name(), d.rms / none.rms);
+                println!(
+                    "{name}, ring of {:?}: {} is {:.2} times as far off as none",
+                    ring.selection.marks[0].half_edge,
+                    row.method.name(),
+                    d.rms / none.rms
+                );
             }
         }
     }
@@ -171,14 +179,17 @@ fn depth_zero(data: &std::path::Path, methods: &[Method], step: usize) -> Vec<Ro
 
 impl Row {
     fn finish(&mut self) {
-        let all = self.closer.iter_mut().chain(&mut self.deviation).chain([&mut self.curvature, &mut self.time]);
+        let all =
+            self.closer.iter_mut().chain(&mut self.deviation).chain([&mut self.curvature, &mut self.time]);
         all.for_each(|values| values.sort_by(f64::total_cmp));
     }
 
     /// One row of the table of docs/optimisation.md: medians, and the tenth that is worst in brackets.
     fn print(&self) {
         let [max, rms, p95, normal] = &self.deviation;
-        let pair = |values: &[f64], worst: f64| format!("{:.2} ({:.2})", quantile(values, 0.5), quantile(values, worst));
+        let pair = |values: &[f64], worst: f64| {
+            format!("{:.2} ({:.2})", quantile(values, 0.5), quantile(values, worst))
+        };
         let percent = |values: &[f64]| format!("{:.3}", 100.0 * quantile(values, 0.5));
         println!(
             "| {} | {} | {} | {} | {} | {} | {} | {} | {} | {:.2} |",

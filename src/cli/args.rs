@@ -22,6 +22,8 @@ pub enum Command {
     Limit(Limit),
     /// Measure how far the limit surfaces of two control meshes are apart
     Deviation(Deviation),
+    /// Tell where extraordinary vertices sit, how much curvature varies round them, and which faces are worst
+    Quality(Quality),
     /// Check or list rule files
     Rules(Rules),
     /// Make example features on chairs: control meshes, limit surfaces, reports, figures
@@ -115,7 +117,7 @@ pub struct Apply {
     #[arg(long = "set", value_name = "[KIND.]NAME=VALUE")]
     pub set: Vec<String>,
     /// How to fit the changed mesh to the surface as it was
-    #[arg(long, value_enum, default_value = "solve")]
+    #[arg(long, visible_alias = "method", value_enum, default_value = "solve")]
     pub optimise: FitMethod,
     /// Write a report as JSON
     #[arg(long, value_name = "FILE")]
@@ -146,6 +148,23 @@ pub struct Limit {
     /// How often to refine; 0 moves the control vertices themselves, in their order
     #[arg(long, default_value_t = 2, value_parser = clap::value_parser!(u8).range(0..=10))]
     pub level: u8,
+    /// Draw the surface with reflection lines, which show unevenness that shading hides
+    #[arg(long, value_name = "FILE.png")]
+    pub zebra: Option<PathBuf>,
+    #[command(flatten)]
+    pub import: Import,
+}
+
+#[derive(Args)]
+pub struct Quality {
+    /// OBJ or PLY file, or - for OBJ on standard input
+    pub input: PathBuf,
+    /// How many of the worst are listed
+    #[arg(long, value_name = "N", default_value_t = 10)]
+    pub worst: usize,
+    /// Print JSON, with all extraordinary vertices
+    #[arg(long)]
+    pub json: bool,
     #[command(flatten)]
     pub import: Import,
 }

@@ -44,7 +44,8 @@ impl Assembly {
                 place += sizes[*other as usize];
             }
             for k in 0..sizes[group] {
-                let all = others.iter().flat_map(|&(other, _)| firsts[other as usize]..firsts[other as usize + 1]);
+                let all =
+                    others.iter().flat_map(|&(other, _)| firsts[other as usize]..firsts[other as usize + 1]);
                 rows.extend(all.skip(k));
                 column_starts.push(rows.len());
             }

@@ -37,13 +37,17 @@ pub(super) fn guarded<'a>(
         let worse = samples.worse_than(mesh, &errors);
         let now = samples.error();
         let is_better = now.distance <= error.distance && now.all <= error.all;
-        if worse.is_empty() || repeat == REPEATS && is_better {
+        let is_last = worse.is_empty() || repeat == REPEATS;
+        if is_last && is_better {
             return Ok(outcome);
         }
         for &(v, position) in &start {
             mesh.set_position(v, position);
         }
         samples.evaluate(mesh, job)?;
+        if is_last {
+            break;
+        }
         free.retain(|v| !worse.contains(v));
     }
     Ok(Outcome { steps: 0, stop: Stop::Nothing, residual: samples.residual() })

@@ -168,4 +168,3 @@ fn closest(target: &Target, point: DVec3, direction: Option<DVec3>) -> Option<Fo
     let facing = direction.map(|normal| Facing { normal, min_cosine: 0.0 });
     target.surface.closest(point, &ClosestOptions { radius: target.reach, facing })
 }
-

@@ -2,11 +2,12 @@
 //!
 //! For each active vertex the limit point is to lie on the frozen surface. The vertex moves along the frozen
 //! surface's normal `m` at the foot of its first limit point. [`Method::Loop`] repeats the paper's update,
-//! [`Method::Solve`] solves the sparse system whose solution that update converges to. Boundary vertices stay on the
-//! frozen boundary curve.
+//! [`Method::Solve`] solves the sparse system whose solution that update converges to. [`Method::Fit`] and
+//! [`Method::FitSlide`] fit the surface between the limit points too. Vertices of the boundary and of creases stay on the
+//! frozen curves. `docs/optimisation.md` compares the methods.
 
 mod assembly;
-mod boundary;
+mod curves;
 mod freedom;
 mod guard;
 mod linear;
@@ -15,13 +16,14 @@ mod rim;
 mod samples;
 mod surface_fit;
 
-pub use boundary::BoundaryCurves;
-pub(crate) use boundary::evaluate as evaluate_b_spline;
+pub use curves::SharpCurves;
+pub(crate) use curves::evaluate as evaluate_b_spline;
 pub(crate) use linear::{LeastSquares, Row};
 
 use crate::job::{Cancelled, Job};
 use crate::mesh::{FaceId, Mesh, VertexId};
 use crate::surface::LimitSurface;
+use curves::is_on_curve;
 use freedom::freedom;
 use rim::fit_rim;
 use samples::Samples;
@@ -107,7 +109,8 @@ pub struct FitReport {
     pub steps: u32,
     /// Why it stopped.
     pub stop: Stop,
-    /// Largest distance of a limit point to the frozen surface along its line, after the last step (model units).
+    /// Largest distance to the frozen surface after the last step, of a limit point along its line or, for the surface
+    /// fits, of a sample (model units).
     pub residual: f64,
     /// Active vertices whose line and closest point found no frozen surface; they were not fitted.
     pub missed: Vec<u32>,
@@ -132,8 +135,8 @@ const TOLERANCE: f64 = 1e-7;
 pub struct Target {
     /// The surface.
     pub surface: LimitSurface,
-    /// Its boundary curves.
-    pub boundary: BoundaryCurves,
+    /// Its boundary and creases.
+    pub curves: SharpCurves,
     /// Vertices below this number were there when it was frozen.
     pub vertices: usize,
     /// How far a limit point may be from it, in model units: twice the mean edge (a foot further away belongs to another part of the shape).
@@ -150,7 +153,7 @@ impl Target {
         }
         Self {
             surface: LimitSurface::around(mesh, faces),
-            boundary: BoundaryCurves::around(mesh, faces),
+            curves: SharpCurves::around(mesh, faces),
             vertices: mesh.vertex_bound(),
             reach: 2.0 * sum / f64::from(count.max(1)),
         }
@@ -166,7 +169,10 @@ pub fn active_set(mesh: &Mesh, changed: &[FaceId], method: Method) -> Vec<Vertex
     vertices
 }
 
-/// Moves the `active` vertices of `mesh` so that their limit points lie on the frozen surface.
+/// Moves the `active` vertices of `mesh` so that its limit surface comes close to the frozen one.
+///
+/// Where that makes a face worse than it was, vertices are held, so no method ends further away than the
+/// start.
 ///
 /// # Errors
 /// [`Cancelled`]; the mesh may have moved by then, so run this inside a transaction.
@@ -183,9 +189,11 @@ pub fn fit(
         return Ok(report);
     }
     report.active = active.len();
-    let (rim, inner): (Vec<VertexId>, Vec<VertexId>) =
-        active.iter().partition(|&&v| mesh.is_boundary_vertex(v));
-    // The limit of a boundary vertex depends on boundary vertices only, so the rim comes first.
+    let (rim, mut inner): (Vec<VertexId>, Vec<VertexId>) =
+        active.iter().partition(|&&v| is_on_curve(mesh, v));
+    // Where the surface ends before the boundary, vertices of the boundary have no point on it.
+    inner.retain(|&v| !mesh.is_boundary_vertex(v));
+    // The limit of a vertex on a sharp curve depends on such vertices only, so the rim comes first.
     let (rim_steps, rim_gap) = fit_rim(mesh, &rim, target, method, job)?;
     let mut missed = Vec::new();
     let outcome = match method {
@@ -224,4 +232,3 @@ pub fn fit(
     report.missed = missed;
     Ok(report)
 }
-

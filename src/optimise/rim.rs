@@ -1,7 +1,7 @@
 //! Vertices of sharp curves stay on them.
 
-use super::{LOOP_STEPS, LeastSquares, Method, Row, SOLVE_STEPS, TOLERANCE, Target};
 use super::lines::apply;
+use super::{LOOP_STEPS, LeastSquares, Method, Row, SOLVE_STEPS, TOLERANCE, Target};
 use crate::job::{Cancelled, Job};
 use crate::mesh::{Mesh, VertexId};
 use crate::subdivision::{LimitMask, limit_mask};
@@ -30,7 +30,7 @@ pub(super) fn fit_rim(
             .iter()
             .map(|mask| {
                 let point = apply(mesh, mask);
-                target.boundary.closest(point).map_or(DVec3::ZERO, |foot| foot - point)
+                target.curves.closest(point).map_or(DVec3::ZERO, |foot| foot - point)
             })
             .collect();
         let largest = gaps.iter().fold(0.0, |largest: f64, gap| largest.max(gap.length()));

@@ -13,7 +13,7 @@ use std::rc::Rc;
 
 /// A face is worse than before only if its error is above this part of the mean error before: a small loss beside the
 /// feature is the price of the gain in it.
-const WORSE: f64 = 1.0;
+const WORSE: f64 = 4.0;
 
 /// Faces with more corners, and at vertices with more edges, are not sampled: too many control vertices for the little
 /// that a sample says about each.
@@ -77,7 +77,13 @@ pub(super) struct Samples<'a> {
 
 impl<'a> Samples<'a> {
     /// At most `order` x `order` samples per face.
-    pub(super) fn new(mesh: &Mesh, vertices: &[VertexId], target: &'a Target, order: usize, slope: f64) -> Self {
+    pub(super) fn new(
+        mesh: &Mesh,
+        vertices: &[VertexId],
+        target: &'a Target,
+        order: usize,
+        slope: f64,
+    ) -> Self {
         let at = vertices.iter().flat_map(|&v| mesh.outgoing(v)).map(|h| mesh.face(h));
         let mut around: Vec<FaceId> = at.filter(|f| !f.is_boundary()).collect();
         around.sort_unstable();
@@ -85,7 +91,8 @@ impl<'a> Samples<'a> {
         // A vertex moves the surface of the faces round its faces too.
         let (mut tables, mut faces, mut count) = (Tables::new(order), Vec::new(), 0);
         for face in mesh.grow_faces(&around).into_iter().filter(|&face| has_limit(mesh, face)) {
-            if is_large(mesh, face) {
+            let is_frozen = target.surface.patch_count(mesh.original_face(face)) > 0;
+            if is_large(mesh, face) || !is_frozen && face == mesh.original_face(face) {
                 continue;
             }
             let Some((control, table)) = tables.of_face(mesh, face) else { continue };
@@ -94,7 +101,8 @@ impl<'a> Samples<'a> {
             faces.push(Sampled { face, control, table, first, error: Error::default() });
         }
         let zero = [DVec3::ZERO; 2];
-        let samples = vec![Sample { foot: None, area: 0.0, factors: [0.0; 2], slopes: zero, turns: zero }; count];
+        let samples =
+            vec![Sample { foot: None, area: 0.0, factors: [0.0; 2], slopes: zero, turns: zero }; count];
         Self { target, slope, faces, samples, is_evaluated: false }
     }
 
@@ -189,7 +197,8 @@ impl<'a> Samples<'a> {
         let cross = du.cross(dv);
         let (foot, area) = (self.find_foot(search, point, cross), cross.length() * share);
         let (mut factors, mut slopes, mut turns) = ([0.0; 2], [DVec3::ZERO; 2], [DVec3::ZERO; 2]);
-        let there = foot.and_then(|foot| self.target.surface.evaluate(foot.face, foot.corner, foot.u, foot.v));
+        let there =
+            foot.and_then(|foot| self.target.surface.evaluate(foot.face, foot.corner, foot.u, foot.v));
         if let Some(there) = there {
             let weight = self.slope * there.du.cross(there.dv).length().sqrt();
             for (k, tangent) in [du, dv].into_iter().enumerate() {

@@ -6,11 +6,11 @@
 //! tangent distance minimisation of Pottmann and Hofer 2003). While a sample slides, its foot does, and the normal
 //! turns; that is in the equations of the slopes, or they would hold every vertex back.
 
+use super::Stop;
 use super::assembly::Assembly;
 use super::freedom::Freedom;
 use super::guard::Outcome;
 use super::samples::{Sampled, Samples};
-use super::Stop;
 use crate::job::{Cancelled, Job};
 use crate::mesh::{Mesh, VertexId};
 use glam::DVec3;
@@ -38,7 +38,11 @@ pub(super) struct SurfaceFit<'a, 'b> {
 
 impl<'a, 'b> SurfaceFit<'a, 'b> {
     /// The samples are evaluated at the positions of the mesh.
-    pub(super) fn new(freedoms: Vec<(VertexId, Freedom)>, samples: &'b mut Samples<'a>, job: &'b Job) -> Self {
+    pub(super) fn new(
+        freedoms: Vec<(VertexId, Freedom)>,
+        samples: &'b mut Samples<'a>,
+        job: &'b Job,
+    ) -> Self {
         let numbers: FxHashMap<VertexId, u32> =
             freedoms.iter().zip(0..).map(|(&(v, _), group)| (v, group)).collect();
         let of_face = |face: &Sampled| face.control.iter().filter_map(|v| numbers.get(v).copied()).collect();
@@ -113,7 +117,8 @@ impl<'a, 'b> SurfaceFit<'a, 'b> {
                         let k = part - 1;
                         let (factor, turn) = (sample.factors[k], sample.turns[k]);
                         for (value, &(i, direction)) in row.iter_mut().zip(&columns) {
-                            *value = factor * weights[i][part] * n.dot(direction) - weights[i][0] * turn.dot(direction);
+                            *value = factor * weights[i][part] * n.dot(direction)
+                                - weights[i][0] * turn.dot(direction);
                         }
                         -n.dot(sample.slopes[k])
                     };

@@ -97,7 +97,8 @@ fn places(arity: usize, control: usize, order: usize) -> Vec<Place> {
     };
     let rule = RULES[order.clamp(1, most) - 1];
     let of_patch = |patch| {
-        rule.iter().flat_map(move |&(v, dv)| rule.iter().map(move |&(u, du)| Place { patch, u, v, share: du * dv }))
+        rule.iter()
+            .flat_map(move |&(v, dv)| rule.iter().map(move |&(u, du)| Place { patch, u, v, share: du * dv }))
     };
     (0..patches).flat_map(of_patch).collect()
 }
@@ -167,7 +168,8 @@ fn describe_corner(mesh: &Mesh, corner: HalfEdgeId, control: &mut Control, key: 
         key.push(FACE);
         key.push(around.vertex.to_bits());
         key.extend(around.spokes.iter().map(|sharpness| sharpness.to_bits()));
-        if mesh.subdivision().creasing == Creasing::Chaikin && around.spokes.iter().any(|&s| is_semi_sharp(s)) {
+        if mesh.subdivision().creasing == Creasing::Chaikin && around.spokes.iter().any(|&s| is_semi_sharp(s))
+        {
             // Depends on edges further away too: shared with no other face.
             key.push(corner.0);
         }
@@ -210,10 +212,14 @@ mod tests {
                 let (control, table) = tables.of_face(&mesh, face).expect("a face");
                 for (place, weights) in table.samples() {
                     let expected = evaluate(&mesh, face, place.patch, place.u, place.v).expect("a point");
-                    for (k, expected) in [expected.position, expected.du, expected.dv].into_iter().enumerate() {
+                    for (k, expected) in [expected.position, expected.du, expected.dv].into_iter().enumerate()
+                    {
                         let found: DVec3 =
                             control.iter().zip(weights).map(|(&v, w)| mesh.position(v) * w[k]).sum();
-                        assert!(found.distance(expected) < 1e-12, "{face:?} {place:?} {k}: {found} {expected}");
+                        assert!(
+                            found.distance(expected) < 1e-12,
+                            "{face:?} {place:?} {k}: {found} {expected}"
+                        );
                     }
                 }
             }

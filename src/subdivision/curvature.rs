@@ -36,7 +36,8 @@ impl SurfacePoint {
         if !flat {
             return None;
         }
-        let to_parameters = DMat2::from_cols(DVec2::new(1.0 / length, 0.0), DVec2::new(-b / (length * c), 1.0 / c));
+        let to_parameters =
+            DMat2::from_cols(DVec2::new(1.0 / length, 0.0), DVec2::new(-b / (length * c), 1.0 / c));
         let mixed = n.dot(second.uv);
         let form = DMat2::from_cols(DVec2::new(n.dot(second.uu), mixed), DVec2::new(mixed, n.dot(second.vv)));
         let shape = to_parameters.transpose() * form * to_parameters;

@@ -292,7 +292,8 @@ impl Ring {
         if face.is_boundary() || !mesh.has_face(face) {
             return None;
         }
-        let fans: SmallVec<[Fan; 4]> = mesh.face_half_edges(face).map(|h| Fan::new(mesh, h, position)).collect();
+        let fans: SmallVec<[Fan; 4]> =
+            mesh.face_half_edges(face).map(|h| Fan::new(mesh, h, position)).collect();
         (fans.len() >= 3).then(|| Self {
             fans,
             centre: face_point(mesh, face, position).0,

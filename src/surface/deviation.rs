@@ -164,7 +164,8 @@ fn sample_faces(
                 let Some(point) = from.evaluate(face, corner, u, v) else { continue };
                 let Some(foot) = foot_on(to, point.position, point.normal) else { continue };
                 let area = point.du.cross(point.dv).length() * width * width;
-                let there = to.evaluate(foot.face, foot.corner, foot.u, foot.v).and_then(|there| there.curvature());
+                let there =
+                    to.evaluate(foot.face, foot.corner, foot.u, foot.v).and_then(|there| there.curvature());
                 let bend = point.curvature().zip(there).map(|(here, there)| here.mean - there.mean);
                 samples.push(DeviationSample {
                     face,

@@ -13,11 +13,13 @@ mod line;
 mod line_piece;
 mod minimise;
 mod near;
+mod quality;
 mod tree;
 
 pub use closest::{ClosestOptions, Facing, Foot};
 pub use deviation::{Comparison, Deviation, DeviationSample, SAMPLES, Sampling, compare, deviation_samples};
 pub use line::Hit;
+pub use quality::{ExtraordinaryVertex, FaceQuality, Quality};
 
 use crate::mesh::{FaceId, Mesh};
 use crate::subdivision::SurfacePoint;

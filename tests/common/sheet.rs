@@ -160,8 +160,13 @@ impl Case {
         let at = |i: usize, j: usize| (j * (SIDE + 1) + i) as u32;
         let points: Vec<DVec3> =
             (0..=SIDE).flat_map(|j| (0..=SIDE).map(move |i| base.point(radius, i, j))).collect();
-        let mut builder =
-            Builder { points: points.clone(), faces: Vec::new(), away: Vec::new(), cuts: HashMap::new(), width };
+        let mut builder = Builder {
+            points: points.clone(),
+            faces: Vec::new(),
+            away: Vec::new(),
+            cuts: HashMap::new(),
+            width,
+        };
         let mut plain = Polygons { positions: points, ..Polygons::default() };
         for (i, j) in (0..SIDE).flat_map(|j| (0..SIDE).map(move |i| (i, j))) {
             let cell @ [bl, br, tr, tl] = [at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)];
@@ -169,7 +174,8 @@ impl Case {
             plain.face_vertices.extend(cell);
             let away = i.abs_diff(MIDDLE).max(j.abs_diff(MIDDLE));
             let (in_column, in_row) = (i == MIDDLE, j == MIDDLE);
-            let upright = in_column && (j < MIDDLE || matches!(pattern, Pattern::Straight | Pattern::Crossing));
+            let upright =
+                in_column && (j < MIDDLE || matches!(pattern, Pattern::Straight | Pattern::Crossing));
             let across = in_row && (i < MIDDLE || matches!(pattern, Pattern::Crossing | Pattern::Tee));
             match (upright, in_column && in_row, across && pattern != Pattern::Straight) {
                 (_, true, _) if pattern == Pattern::Corner => builder.corner(cell),
