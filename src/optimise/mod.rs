@@ -198,7 +198,8 @@ pub fn fit(
     let mut missed = Vec::new();
     let outcome = match method {
         Method::None | Method::Loop | Method::Solve => {
-            let mut samples = Samples::new(mesh, &inner, target, 1, SLOPE);
+            // Beyond the active vertices the frozen surface may end.
+            let mut samples = Samples::new(mesh, active, target, 1, SLOPE, false);
             guard::guarded(mesh, inner, &mut samples, job, |mesh, free, samples| {
                 missed.clear();
                 let outcome = lines::run(mesh, free, target, method, &mut missed, job)?;
@@ -218,7 +219,7 @@ pub fn fit(
                 }
             }
             let slope = if slide { SLOPE_SLIDING } else { SLOPE };
-            let mut samples = Samples::new(mesh, &inner, target, ORDER, slope);
+            let mut samples = Samples::new(mesh, &inner, target, ORDER, slope, true);
             guard::guarded(mesh, inner, &mut samples, job, |mesh, free, samples| {
                 freedoms.retain(|(v, _)| free.binary_search(v).is_ok());
                 SurfaceFit::new(freedoms.clone(), samples, job).run(mesh)

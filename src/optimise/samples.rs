@@ -76,14 +76,17 @@ pub(super) struct Samples<'a> {
 }
 
 impl<'a> Samples<'a> {
-    /// At most `order` x `order` samples per face.
+    /// At most `order` x `order` samples on each face whose surface moves with `vertices`, which are ascending; only on
+    /// faces between them, unless `beyond`.
     pub(super) fn new(
         mesh: &Mesh,
         vertices: &[VertexId],
         target: &'a Target,
         order: usize,
         slope: f64,
+        beyond: bool,
     ) -> Self {
+        let is_between = |face| mesh.face_vertices(face).all(|v| vertices.binary_search(&v).is_ok());
         let at = vertices.iter().flat_map(|&v| mesh.outgoing(v)).map(|h| mesh.face(h));
         let mut around: Vec<FaceId> = at.filter(|f| !f.is_boundary()).collect();
         around.sort_unstable();
@@ -91,8 +94,7 @@ impl<'a> Samples<'a> {
         // A vertex moves the surface of the faces round its faces too.
         let (mut tables, mut faces, mut count) = (Tables::new(order), Vec::new(), 0);
         for face in mesh.grow_faces(&around).into_iter().filter(|&face| has_limit(mesh, face)) {
-            let is_frozen = target.surface.patch_count(mesh.original_face(face)) > 0;
-            if is_large(mesh, face) || !is_frozen && face == mesh.original_face(face) {
+            if is_large(mesh, face) || !(beyond || is_between(face)) {
                 continue;
             }
             let Some((control, table)) = tables.of_face(mesh, face) else { continue };
