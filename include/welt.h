@@ -209,6 +209,16 @@ extern "C" {
 #define WELT_FIT_SOLVE 2
 
 /*
+ Least squares of distance and slope over samples of the surface; vertices move along the normal.
+ */
+#define WELT_FIT_SURFACE 3
+
+/*
+ The same; vertices that were there before may also slide along the surface, which brings the new surface closest.
+ */
+#define WELT_FIT_SURFACE_SLIDE 4
+
+/*
  A line of vertices between faces that the marks leave with an odd number of sides, where the way is short; one irregular
  face each elsewhere.
  */
@@ -1257,6 +1267,28 @@ int32_t welt_surface_create(const welt_mesh *mesh,
  Frees a surface. NULL is allowed. Since: 0.1.
  */
 WELT_API void welt_surface_free(welt_surface *surface);
+
+/*
+ Curvature of the limit surface at parameters of faces.
+
+ surface, faces, corners, parameters, count: as for welt_surface_evaluate.
+ values: receives per point 10 doubles: the principal curvatures, the greater first; the unit tangents along which the normal
+ curvature takes these values; mean and Gaussian curvature. Curvature is positive where the surface bends towards its
+ normal: a sphere of radius r whose normals point outwards has -1/r, in units of the model. All are NaN at an extraordinary vertex, where curvature is
+ not defined, where the tangents span no plane, and where the surface has no part of the face.
+ capacity: room in values, at least 10 * count doubles.
+
+ Fails with WELT_ERROR_ARGUMENT where a face has no such patch, or a parameter is NaN. Since: 0.1.
+ */
+WELT_API
+int32_t welt_surface_curvature(const welt_surface *surface,
+                               const uint32_t *faces,
+                               const uint32_t *corners,
+                               const double *parameters,
+                               size_t count,
+                               double *values,
+                               size_t capacity,
+                               welt_error **error);
 
 /*
  Moves vertices so that their limit points lie on a frozen surface.

@@ -384,6 +384,19 @@ fn two_runs_write_the_same_bytes() {
 }
 
 #[test]
+fn quality_and_reflection_lines() {
+    let folder = Folder::new("quality");
+    let text = folder.welt(&["quality", "sheet.obj", "--worst", "1"]).succeeds().out;
+    // The triangles' longest edge is their diagonal.
+    assert!(text.contains("extraordinary vertices:") && text.contains("3 edges  1.41"), "{text}");
+    let json = folder.welt(&["quality", "sheet.obj", "--json"]).succeeds().out;
+    assert!(json.contains("\"median_aspect\": 1.0") && json.contains("\"extraordinary\""), "{json}");
+    folder.welt(&["limit", "sheet.obj", "-o", "out.obj", "--zebra", "absent/z.png"]).fails(1, &["absent"]);
+    folder.welt(&["limit", "sheet.obj", "-o", "out.obj", "--zebra", "z.png"]).succeeds();
+    assert!(fs::read(folder.0.join("z.png")).unwrap().starts_with(b"\x89PNG"));
+}
+
+#[test]
 fn a_mesh_does_not_deviate_from_itself() {
     let folder = Folder::new("deviation");
     let run = folder.welt(&["deviation", "sheet.obj", "sheet.obj", "--json"]).succeeds();

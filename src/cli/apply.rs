@@ -86,6 +86,8 @@ fn options(arguments: &Apply) -> Options {
             FitMethod::None => Method::None,
             FitMethod::Loop => Method::Loop,
             FitMethod::Solve => Method::Solve,
+            FitMethod::Fit => Method::Fit,
+            FitMethod::FitSlide => Method::FitSlide,
         },
         parity: match arguments.parity {
             Parity::Auto => parity::Mode::Auto,

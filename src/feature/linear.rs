@@ -17,9 +17,6 @@ use crate::surface::Sampling;
 use glam::DVec3;
 use rustc_hash::FxHashMap;
 
-/// Rings of faces around the marked ones whose limit surface is frozen for the fit: the active vertices lie on the
-/// faces around the changed ones.
-const FIT_RINGS: usize = 2;
 /// Reached width or depth within this fraction of the asked one needs no correction.
 const GOOD_ENOUGH: f64 = 3e-3;
 /// Corrections at most. One is enough on even grids; where the length of the crossed edges jumps, the widths of
@@ -75,7 +72,8 @@ impl Run<'_> {
         self.route_parity(mesh, job)?;
         let crossed = self.crossed_faces(mesh);
         let mut region = crossed.clone();
-        for _ in 0..FIT_RINGS {
+        // Rules change the faces around the crossed ones too.
+        for _ in 0..1 + self.options.method.frozen_rings() {
             region = mesh.grow_faces(&region);
         }
         let footprint = mesh.grow_faces(&crossed);
@@ -161,8 +159,9 @@ impl Run<'_> {
 
     /// The frozen faces and those that are missing among them, when the fit needs more than `region`.
     fn uncovered(&self, mesh: &Mesh, changed: &[FaceId], region: &[FaceId]) -> Option<Vec<FaceId>> {
-        let mut needed: Vec<FaceId> =
-            mesh.grow_faces(changed).into_iter().map(|f| mesh.original_face(f)).collect();
+        let rings = self.options.method.frozen_rings();
+        let needed = (0..rings).fold(changed.to_vec(), |faces, _| mesh.grow_faces(&faces));
+        let mut needed: Vec<FaceId> = needed.into_iter().map(|f| mesh.original_face(f)).collect();
         needed.sort_unstable();
         needed.dedup();
         needed.retain(|f| region.binary_search(f).is_err() && f.index() < self.first_face);
@@ -196,7 +195,7 @@ impl Run<'_> {
         self.clock.lap("rules");
 
         job.step("fit", 0.3)?;
-        let active = optimise::active_set(mesh, &changed);
+        let active = optimise::active_set(mesh, &changed, self.options.method);
         let fit = optimise::fit(mesh, &active, target, self.options.method, job)?;
         self.clock.lap("fit");
 

@@ -286,6 +286,11 @@ impl fmt::Display for Report {
                     "deviation, {name}: max {:.3e}, rms {:.3e}; outside of the footprint max {:.3e}, rms {:.3e}",
                     d.total.max, d.total.rms, d.outside.max, d.outside.rms
                 )?;
+                writeln!(
+                    f,
+                    "  outside of the footprint 95 % within {:.3e}; normals turn by at most {:.2} degrees, mean curvature changes by at most {:.2e}, rms {:.2e}",
+                    d.outside.p95, d.outside.normal, d.outside.curvature_max, d.outside.curvature_rms
+                )?;
             }
         }
         if self.without_texcoords > 0 {

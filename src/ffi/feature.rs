@@ -25,12 +25,18 @@ pub const WELT_FIT_NONE: u32 = 0;
 pub const WELT_FIT_LOOP: u32 = 1;
 /// The sparse system which that iteration converges to.
 pub const WELT_FIT_SOLVE: u32 = 2;
+/// Least squares of distance and slope over samples of the surface; vertices move along the normal.
+pub const WELT_FIT_SURFACE: u32 = 3;
+/// The same; vertices that were there before may also slide along the surface, which brings the new surface closest.
+pub const WELT_FIT_SURFACE_SLIDE: u32 = 4;
 
 pub(super) fn method(number: u32) -> Result<Method, Failure> {
     match number {
         WELT_FIT_NONE => Ok(Method::None),
         WELT_FIT_LOOP => Ok(Method::Loop),
         WELT_FIT_SOLVE => Ok(Method::Solve),
+        WELT_FIT_SURFACE => Ok(Method::Fit),
+        WELT_FIT_SURFACE_SLIDE => Ok(Method::FitSlide),
         _ => Err(Failure::argument(format!("the fit is {number}, which is no WELT_FIT_*"))),
     }
 }

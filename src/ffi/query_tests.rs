@@ -28,7 +28,7 @@ fn cube(faces: usize) -> *mut WeltSurface {
             ),
             WELT_OK
         );
-        assert_eq!(welt_surface_create(mesh, null(), 0, &mut surface, null_mut()), WELT_OK);
+        assert_eq!(welt_surface_create(mesh, null(), 0, null(), &mut surface, null_mut()), WELT_OK);
         welt_mesh_free(mesh);
     }
     surface

@@ -1,6 +1,6 @@
 //! `welt_surface`.
 
-use super::arguments::{self, Output};
+use super::arguments::{self, Buffer, Output};
 use super::boundary::boundary;
 use super::error::WeltError;
 use super::failure::Failure;
@@ -11,6 +11,7 @@ use super::report::{WeltReport, hand_over};
 use crate::job::Job;
 use crate::mesh::{FaceId, VertexId};
 use crate::optimise::{self, Target};
+use crate::subdivision::SurfacePoint;
 
 /// A limit surface, frozen: it stays as it is when its mesh changes. Never changes.
 pub struct WeltSurface {
@@ -62,6 +63,94 @@ pub unsafe extern "C" fn welt_surface_create(
 pub unsafe extern "C" fn welt_surface_free(surface: *mut WeltSurface) {
     // SAFETY: the header asks for NULL or a surface that was not freed.
     unsafe { arguments::free(surface) };
+}
+
+/// Curvature of the limit surface at parameters of faces.
+///
+/// surface, faces, corners, parameters, count: as for welt_surface_evaluate.
+/// values: receives per point 10 doubles: the principal curvatures, the greater first; the unit tangents along which the normal
+/// curvature takes these values; mean and Gaussian curvature. Curvature is positive where the surface bends towards its
+/// normal: a sphere of radius r whose normals point outwards has -1/r, in units of the model. All are NaN at an extraordinary vertex, where curvature is
+/// not defined, where the tangents span no plane, and where the surface has no part of the face.
+/// capacity: room in values, at least 10 * count doubles.
+///
+/// Fails with WELT_ERROR_ARGUMENT where a face has no such patch, or a parameter is NaN. Since: 0.1.
+#[unsafe(no_mangle)]
+#[allow(clippy::too_many_arguments)]
+pub unsafe extern "C" fn welt_surface_curvature(
+    surface: *const WeltSurface,
+    faces: *const u32,
+    corners: *const u32,
+    parameters: *const f64,
+    count: usize,
+    values: *mut f64,
+    capacity: usize,
+    error: *mut *mut WeltError,
+) -> i32 {
+    let body = || {
+        // SAFETY: the header asks for a living surface, arrays of this count and a buffer of this capacity.
+        unsafe { evaluate_each(surface, faces, corners, parameters, count, values, capacity, curvature) }
+    };
+    // SAFETY: the header asks for NULL or a place for an error.
+    unsafe { boundary(error, body) }
+}
+
+/// Writes what `value` makes of the points at parameters of faces, N doubles each.
+///
+/// # Safety
+/// As for [`welt_surface_curvature`], with a buffer of `capacity` doubles.
+#[allow(clippy::too_many_arguments)]
+unsafe fn evaluate_each<const N: usize>(
+    surface: *const WeltSurface,
+    faces: *const u32,
+    corners: *const u32,
+    parameters: *const f64,
+    count: usize,
+    values: *mut f64,
+    capacity: usize,
+    value: impl Fn(Option<SurfacePoint>) -> [f64; N],
+) -> Result<(), Failure> {
+    let too_large = || Failure::argument(format!("count is {count}, which is too large"));
+    let needed = count.checked_mul(N).ok_or_else(too_large)?;
+    // SAFETY: the caller vouches for the surface, the arrays and the buffer.
+    let (surface, faces, parameters, buffer) = unsafe {
+        (
+            arguments::handle(surface, "surface")?,
+            arguments::array(faces, count, "faces")?,
+            arguments::array(parameters, 2 * count, "parameters")?,
+            Buffer::new(values, capacity, needed, "values")?,
+        )
+    };
+    let corners = if corners.is_null() {
+        &[]
+    } else {
+        // SAFETY: not NULL; the caller vouches for an array of this count.
+        unsafe { arguments::array(corners, count, "corners") }?
+    };
+    let surface = &surface.target.surface;
+    let mut found = Vec::with_capacity(count);
+    for (i, (&face, uv)) in faces.iter().zip(parameters.chunks_exact(2)).enumerate() {
+        let corner = corners.get(i).copied().unwrap_or(0) as usize;
+        let patches = surface.patch_count(FaceId(face));
+        if patches > 0 && corner >= patches {
+            return Err(Failure::argument(format!("face {face} has no patch {corner}")));
+        }
+        if uv.iter().any(|parameter| parameter.is_nan()) {
+            return Err(Failure::argument(format!("a parameter of point {i} is NaN")));
+        }
+        found.push(value(surface.evaluate(FaceId(face), corner, uv[0], uv[1])));
+    }
+    buffer.fill(found.into_iter().flatten());
+    Ok(())
+}
+
+/// Principal curvatures and directions, mean and Gaussian curvature; NaN where they are not defined.
+fn curvature(point: Option<SurfacePoint>) -> [f64; 10] {
+    point.and_then(|point| point.curvature()).map_or([f64::NAN; 10], |found| {
+        let [[a, b, c], [d, e, f]] = found.directions.map(|direction| direction.to_array());
+        let [first, second] = found.principal;
+        [first, second, a, b, c, d, e, f, found.mean, found.gaussian]
+    })
 }
 
 /// Moves vertices so that their limit points lie on a frozen surface.

@@ -6,6 +6,8 @@
 //! ([`Mesh::subdivision`](crate::mesh::Mesh::subdivision)). Creases, corners and darts are those of OpenSubdiv
 //! (DeRose, Kass, Truong 1998; Hoppe et al. 1994), semi-sharp or infinitely sharp.
 
+pub(crate) mod basis;
+mod curvature;
 mod dart;
 mod evaluate;
 mod exceptions;
@@ -33,6 +35,7 @@ mod sharpness_fan;
 mod tests;
 mod topology;
 
+pub use curvature::Curvature;
 pub use evaluate::{SecondDerivatives, SurfacePoint, evaluate};
 pub use limit::{LimitPoint, limit_normal, limit_point, limit_points, limit_position, limit_positions};
 pub(crate) use limit::{each_limit_point, each_limit_position};

@@ -120,14 +120,29 @@ impl Patch {
     /// The patches of a real face: one for a quad, one per corner for another face. Empty for a face that does not
     /// exist or has fewer than three edges.
     pub(crate) fn of_face(mesh: &Mesh, face: FaceId) -> Vec<Self> {
-        let Some(ring) = Ring::new(mesh, face) else {
-            return Vec::new();
-        };
+        Ring::new(mesh, face).map_or(Vec::new(), |ring| Self::of_ring(&ring))
+    }
+
+    /// The patches of the face of `ring`.
+    pub(crate) fn of_ring(ring: &Ring) -> Vec<Self> {
         if ring.arity() == 4 {
-            return vec![Self::of_quad(&ring, false)];
+            return vec![Self::of_quad(ring, false)];
         }
         let refined = ring.refine();
         (0..ring.arity()).map(|corner| Self::of_quad(&ring.child(&refined, corner), false)).collect()
+    }
+
+    /// Evaluates the patch at (u, v) in [0, 1]^2.
+    pub(crate) fn evaluate(&self, u: f64, v: f64) -> Evaluated {
+        match self {
+            Self::Regular(bicubic) => Evaluated::regular(bicubic.jet(u, v)),
+            Self::Corner(corner) => evaluate_corner(corner, u, v),
+            Self::Split(quarters) => {
+                let (quarter, x, y) = to_quarter(u, v);
+                let found = quarters[quarter].evaluate(x, y);
+                Evaluated { jet: found.jet.in_patch(quarter), ..found }
+            }
+        }
     }
 
     /// Recursion ends after 12 levels: sharpness is below 10 or infinite, and then quarters are no longer split.

@@ -9,7 +9,7 @@ use super::patch_bicubic::Grid;
 use super::patch_corner::{Centre, Corner, FanKey, Points, Tip};
 use super::patch_direct::place_round;
 use super::sharpness::{Around, Values};
-use crate::mesh::{Creasing, FaceId, HalfEdgeId, Mesh};
+use crate::mesh::{Creasing, FaceId, HalfEdgeId, Mesh, VertexId};
 use glam::DVec3;
 use smallvec::{SmallVec, smallvec};
 use std::borrow::Cow;
@@ -59,10 +59,10 @@ pub(crate) struct RefinedFace {
     edges: Points,
 }
 
-fn face_point(mesh: &Mesh, face: FaceId) -> (DVec3, usize) {
+fn face_point(mesh: &Mesh, face: FaceId, position: &impl Fn(VertexId) -> DVec3) -> (DVec3, usize) {
     let (mut sum, mut count) = (DVec3::ZERO, 0);
     for v in mesh.face_vertices(face) {
-        sum += mesh.position(v);
+        sum += position(v);
         count += 1;
     }
     (sum / count as f64, count)
@@ -70,7 +70,7 @@ fn face_point(mesh: &Mesh, face: FaceId) -> (DVec3, usize) {
 
 impl Fan {
     /// The fan at the source of `corner`, a half-edge of the ring's face.
-    fn new(mesh: &Mesh, corner: HalfEdgeId) -> Self {
+    fn new(mesh: &Mesh, corner: HalfEdgeId, position: &impl Fn(VertexId) -> DVec3) -> Self {
         let vertex = mesh.source(corner);
         let mut first = corner;
         let mut home = 0;
@@ -89,7 +89,7 @@ impl Fan {
             home = place_round(mesh, corner);
         }
         let mut fan = Self {
-            vertex: mesh.position(vertex),
+            vertex: position(vertex),
             spokes: Points::new(),
             faces: SmallVec::new(),
             home,
@@ -102,13 +102,13 @@ impl Fan {
         let mut edges: SmallVec<[HalfEdgeId; 8]> = SmallVec::new();
         loop {
             edges.push(spoke);
-            fan.spokes.push(mesh.position(mesh.target(spoke)));
+            fan.spokes.push(position(mesh.target(spoke)));
             let face = mesh.face(spoke);
             if face.is_boundary() {
                 break;
             }
-            let (point, arity) = face_point(mesh, face);
-            let diagonal = mesh.position(mesh.target(mesh.next(spoke)));
+            let (point, arity) = face_point(mesh, face, position);
+            let diagonal = position(mesh.target(mesh.next(spoke)));
             fan.faces.push(FanFace { point, diagonal, quad: arity == 4 });
             spoke = mesh.vertex_ccw(spoke);
             if spoke == first {
@@ -270,14 +270,24 @@ impl Fan {
 impl Ring {
     /// The ring of a real face; `None` when the face has fewer than three edges.
     pub(crate) fn new(mesh: &Mesh, face: FaceId) -> Option<Self> {
+        Self::with_positions(mesh, face, &|v| mesh.position(v))
+    }
+
+    /// The same with other positions than those of the mesh.
+    pub(crate) fn with_positions(
+        mesh: &Mesh,
+        face: FaceId,
+        position: &impl Fn(VertexId) -> DVec3,
+    ) -> Option<Self> {
         if face.is_boundary() || !mesh.has_face(face) {
             return None;
         }
-        let fans: SmallVec<[Fan; 4]> = mesh.face_half_edges(face).map(|h| Fan::new(mesh, h)).collect();
+        let fans: SmallVec<[Fan; 4]> =
+            mesh.face_half_edges(face).map(|h| Fan::new(mesh, h, position)).collect();
         (fans.len() >= 3).then(|| Self {
             fans,
             face: Some(face),
-            centre: face_point(mesh, face).0,
+            centre: face_point(mesh, face, position).0,
             creasing: mesh.subdivision().creasing,
         })
     }

@@ -25,6 +25,7 @@ mod line_piece;
 mod minimise;
 mod near;
 mod places;
+mod quality;
 mod tree;
 mod valence;
 
@@ -33,6 +34,7 @@ pub use closest::{ClosestOptions, Facing, Foot};
 pub use deviation::{Comparison, Deviation, DeviationSample, SAMPLES, Sampling, compare, deviation_samples};
 pub use kernel::Derivatives;
 pub use line::Hit;
+pub use quality::{ExtraordinaryVertex, FaceQuality, Quality};
 
 use crate::job::{Cancelled, Job};
 use crate::mesh::{FaceId, Mesh};
@@ -170,20 +172,10 @@ impl LimitSurface {
         self.index.get_or_init(|| Index::new(self))
     }
 
-    /// The distance of `point` to the surface, positive on the side of its normals.
-    ///
-    /// That to the closest point, unless its normal is opposite to `normal`: then a foot whose normal has an angle
-    /// below 90 degrees counts, so that a thin wall does not snap to its other side, if there is one at most ten times
-    /// as far away (else the point belongs to a small fold). `None` when the surface is empty or a coordinate is not
-    /// finite.
+    /// The distance of `point` to the surface, positive on the side of its normals: that to its
+    /// [`compatible_foot`](Self::compatible_foot). `None` when the surface is empty or a coordinate is not finite.
     pub fn signed_distance(&self, point: DVec3, normal: DVec3) -> Option<f64> {
-        const FARTHER: f64 = 10.0;
-        let mut foot = self.closest(point, &ClosestOptions::default())?;
-        if foot.normal.dot(normal) <= 0.0 {
-            let facing = Some(Facing { normal, min_cosine: 0.0 });
-            let radius = FARTHER * foot.distance;
-            foot = self.closest(point, &ClosestOptions { radius, facing }).unwrap_or(foot);
-        }
+        let foot = self.compatible_foot(point, normal)?;
         Some(foot.distance.copysign((point - foot.position).dot(foot.normal)))
     }
 
@@ -209,5 +201,21 @@ impl LimitSurface {
             (slope.abs() > 0.01 * way.length()).then_some(-slope)
         });
         Some(foot.distance.copysign(side.unwrap_or(height)))
+    }
+
+    /// The point of the surface that belongs to `point`, which lies on another surface with `normal`.
+    ///
+    /// The closest point, unless its normal is opposite to `normal`: then a foot whose normal has an angle below 90
+    /// degrees counts, so that a thin wall does not snap to its other side, if there is one at most ten times as far
+    /// away (else the point belongs to a small fold). `None` when the surface is empty or a coordinate is not finite.
+    pub fn compatible_foot(&self, point: DVec3, normal: DVec3) -> Option<Foot> {
+        const FARTHER: f64 = 10.0;
+        let foot = self.closest(point, &ClosestOptions::default())?;
+        if foot.normal.dot(normal) > 0.0 {
+            return Some(foot);
+        }
+        let facing = Some(Facing { normal, min_cosine: 0.0 });
+        let radius = FARTHER * foot.distance;
+        Some(self.closest(point, &ClosestOptions { radius, facing }).unwrap_or(foot))
     }
 }
