@@ -185,7 +185,8 @@ pub fn apply(
     set: &[(&str, f64)],
 ) -> Applied {
     let faces: Vec<FaceId> = mesh.faces().collect();
-    let target = (method != Method::None).then(|| Target::freeze(&mesh, &faces));
+    let target =
+        (method != Method::None).then(|| Target::freeze(&mesh, &faces, &Job::new()).expect("not cancelled"));
     let names = ["cuts", "lines", "mark", "color", "t"].map(|name| mesh.intern(name));
     for (number, &(from, to, band)) in marks.iter().enumerate() {
         let h = mesh.find_half_edge(from, to).expect("an edge");
@@ -214,7 +215,7 @@ pub fn apply(
     let outcome = grammar::run(rules, &mut mesh, &options).unwrap_or_else(|error| panic!("{error}"));
     mesh.validate_control_mesh().expect("valid");
     if let Some(target) = &target {
-        let active = optimise::active_set(&mesh, &outcome.touched);
+        let active = optimise::active_set(&mesh, &outcome.touched, method);
         optimise::fit(&mut mesh, &active, target, method, &Job::new()).expect("a fit");
     }
     let base = mesh.clone();
