@@ -35,10 +35,8 @@ pub(super) fn guarded<'a>(
     for repeat in 0..=REPEATS {
         let outcome = fit(mesh, &free, samples)?;
         let worse = samples.worse_than(mesh, &errors);
-        let now = samples.error();
-        let is_better = now.distance <= error.distance && now.all <= error.all;
         let is_last = worse.is_empty() || repeat == REPEATS;
-        if is_last && is_better {
+        if is_last && samples.is_as_near(error) {
             return Ok(outcome);
         }
         for &(v, position) in &start {

@@ -128,6 +128,18 @@ impl<'a> Samples<'a> {
         errors.fold(Error::default(), Error::plus)
     }
 
+    /// Mean squares below this are rounding.
+    fn rounding(&self) -> f64 {
+        (TOLERANCE * self.target.reach).powi(2)
+    }
+
+    /// True when the surface as a whole is as near as it was with the error `before`.
+    pub(super) fn is_as_near(&self, before: Error) -> bool {
+        let rounding = self.rounding() * self.faces.iter().map(|face| self.area(face)).sum::<f64>();
+        let now = self.error();
+        now.distance <= before.distance.max(rounding) && now.all <= before.all.max(rounding)
+    }
+
     /// The errors of the faces.
     pub(super) fn errors(&self) -> Vec<Error> {
         self.faces.iter().map(|face| face.error).collect()
@@ -140,7 +152,7 @@ impl<'a> Samples<'a> {
         let total: f64 = areas().sum();
         let sums = areas().zip(before).map(|(area, error)| error.map(|error| error * area / total));
         let mean = sums.fold(Error::default(), Error::plus);
-        let rounding = (TOLERANCE * self.target.reach).powi(2);
+        let rounding = self.rounding();
         let worse = self.faces.iter().zip(before).filter(|(face, before)| {
             face.error.distance > before.distance.max(WORSE * mean.distance).max(rounding)
                 || face.error.all > before.all.max(WORSE * mean.all).max(rounding)
