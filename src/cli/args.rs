@@ -22,7 +22,7 @@ pub enum Command {
     Limit(Limit),
     /// Measure how far the limit surfaces of two control meshes are apart
     Deviation(Deviation),
-    /// Check or list rule files
+    /// Check, test or list rule files
     Rules(Rules),
     /// Make example features on chairs: control meshes, limit surfaces, reports, figures
     Demo(Demo),
@@ -175,6 +175,12 @@ pub enum RulesAction {
     /// Check rule files; exit code 1 when one has an error
     Check {
         /// Rule files
+        #[arg(required = true)]
+        files: Vec<PathBuf>,
+    },
+    /// Run before/after cases of rules; exit code 1 when one does not pass
+    Test {
+        /// Case files
         #[arg(required = true)]
         files: Vec<PathBuf>,
     },

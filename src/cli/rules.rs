@@ -9,11 +9,12 @@ use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use welt::feature::PROFILES;
-use welt::grammar::{Parameter, RuleSet};
+use welt::grammar::{Case, Parameter, RuleSet};
 
 pub fn run(arguments: &Rules) -> Result<ExitCode, Failure> {
     match &arguments.action {
         RulesAction::Check { files } => check(files),
+        RulesAction::Test { files } => test(files),
         RulesAction::List { file, json } => list(file.as_deref(), *json),
     }
 }
@@ -27,6 +28,20 @@ fn check(files: &[PathBuf]) -> Result<ExitCode, Failure> {
             }
             Err(error) => {
                 tell(error);
+                code = ExitCode::FAILURE;
+            }
+        }
+    }
+    Ok(code)
+}
+
+fn test(files: &[PathBuf]) -> Result<ExitCode, Failure> {
+    let mut code = ExitCode::SUCCESS;
+    for path in files {
+        match Case::load(path).and_then(|case| case.check()) {
+            Ok(()) => print(|out| writeln!(out, "{}: passed", path.display()))?,
+            Err(error) => {
+                tell(format_args!("{}: {error}", path.display()));
                 code = ExitCode::FAILURE;
             }
         }

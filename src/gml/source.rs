@@ -5,7 +5,7 @@ use std::fmt;
 use std::sync::Arc;
 
 /// A text that scripts or rules were read from.
-#[derive(PartialEq, Eq, Debug)]
+#[derive(PartialEq, Eq, Default, Debug)]
 pub struct Source {
     /// Name shown in messages: a path, or the name of a built-in file.
     pub name: String,

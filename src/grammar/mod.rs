@@ -5,6 +5,7 @@
 //! starts its search at the most selective attribute of its pattern, through an index, and after an application only
 //! what can see the change is examined again: cost follows the marks, not the mesh. `docs/rules.md` is the reference.
 
+mod case;
 mod error;
 mod parse;
 mod pattern;
@@ -14,6 +15,7 @@ mod ruleset;
 mod run;
 mod search;
 
+pub use case::{Case, CaseError};
 pub use error::{Place, RulesError, RunError};
 pub use ruleset::{Loader, Parameter, Rule, RuleSet};
 pub use run::{Limits, Outcome, RunOptions, run};

@@ -39,7 +39,7 @@ pub(super) fn parse(name: &str, text: &str, loader: &Loader<'_>) -> Result<RuleS
 }
 
 /// Runs of rules of one phase.
-fn phases(rules: &[Rule]) -> Vec<std::ops::Range<usize>> {
+pub(super) fn phases(rules: &[Rule]) -> Vec<std::ops::Range<usize>> {
     let mut start = 0;
     rules
         .chunk_by(|a, b| a.phase == b.phase)

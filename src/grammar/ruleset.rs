@@ -109,6 +109,20 @@ impl RuleSet {
         Self::parse(&name, &text, &|file| std::fs::read_to_string(PathBuf::from(file)).ok())
     }
 
+    /// The rules called `names` only, in the order of the text.
+    ///
+    /// # Errors
+    /// The first name that no rule has.
+    pub fn only<'n>(&self, names: &[&'n str]) -> Result<Self, &'n str> {
+        if let Some(unknown) = names.iter().find(|name| !self.rules.iter().any(|rule| rule.name == **name)) {
+            return Err(unknown);
+        }
+        let mut set = self.clone();
+        set.rules.retain(|rule| names.contains(&rule.name.as_str()));
+        set.phases = parse::phases(&set.rules);
+        Ok(set)
+    }
+
     /// Name of the file.
     pub fn name(&self) -> &str {
         &self.name

@@ -268,6 +268,12 @@ impl Mesh {
         self.attributes.links(from, label)
     }
 
+    /// All links that start at `from`, as label and target.
+    pub fn links_from(&self, from: Node) -> Vec<(Symbol, Node)> {
+        let links = self.attributes.links_of(from).into_iter();
+        links.filter(|link| link.0 == from).map(|(_, label, to)| (label, to)).collect()
+    }
+
     /// Nodes that are linked to `to` by `label`.
     pub fn back_links(&self, to: Node, label: Symbol) -> &[Node] {
         self.attributes.back_links(to, label)
