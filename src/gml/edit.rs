@@ -10,7 +10,9 @@ impl Execution<'_, '_, '_> {
     pub(super) fn make_vefs(&mut self) -> Result<(), Fault> {
         let p1 = self.pop_vec3()?;
         let p0 = self.pop_vec3()?;
-        let e = self.environment.mesh.make_vefs(p0, p1)?;
+        self.environment.budget.edit(4)?;
+        let made = self.environment.mesh.make_vefs(p0, p1);
+        let e = self.euler(made)?;
         self.push_half_edge(e)
     }
 
@@ -18,21 +20,27 @@ impl Execution<'_, '_, '_> {
         let p = self.pop_vec3()?;
         let e1 = self.pop_half_edge()?;
         let e0 = self.pop_half_edge()?;
-        let n = self.environment.mesh.make_ev(e0, e1, p)?;
+        self.environment.budget.edit(2)?;
+        let made = self.environment.mesh.make_ev(e0, e1, p);
+        let n = self.euler(made)?;
         self.push_half_edge(n)
     }
 
     pub(super) fn make_ev_one(&mut self) -> Result<(), Fault> {
         let p = self.pop_vec3()?;
         let e = self.pop_half_edge()?;
-        let n = self.environment.mesh.make_ev_one(e, p)?;
+        self.environment.budget.edit(2)?;
+        let made = self.environment.mesh.make_ev_one(e, p);
+        let n = self.euler(made)?;
         self.push_half_edge(n)
     }
 
     pub(super) fn make_ef(&mut self) -> Result<(), Fault> {
         let e1 = self.pop_half_edge()?;
         let e0 = self.pop_half_edge()?;
-        let n = self.environment.mesh.make_ef(e0, e1)?;
+        self.environment.budget.edit(2)?;
+        let made = self.environment.mesh.make_ef(e0, e1);
+        let n = self.euler(made)?;
         self.push_half_edge(n)
     }
 
@@ -41,13 +49,16 @@ impl Execution<'_, '_, '_> {
         kill: fn(&mut Mesh, HalfEdgeId) -> Result<(), EulerError>,
     ) -> Result<(), Fault> {
         let e = self.pop_half_edge()?;
-        Ok(kill(self.environment.mesh, e)?)
+        self.environment.budget.edit(2)?;
+        let killed = kill(self.environment.mesh, e);
+        self.euler(killed)
     }
 
     fn place_vertex(&mut self, v: VertexId, p: DVec3) -> Result<(), Fault> {
         if !p.is_finite() {
-            return Err(EulerError::NotFinite.into());
+            return self.euler(Err(EulerError::NotFinite));
         }
+        self.environment.budget.edit(1)?;
         self.environment.mesh.set_position(v, p);
         Ok(())
     }
@@ -92,6 +103,7 @@ impl Execution<'_, '_, '_> {
                 "a sharpness of {sharpness} is out of range; it is 0 (smooth) or more"
             )));
         }
+        self.environment.budget.edit(1)?;
         match self.pop_node()? {
             Node::HalfEdge(h) => self.environment.mesh.set_edge_sharpness(h, sharpness as f32),
             Node::Vertex(v) => self.environment.mesh.set_vertex_sharpness(v, sharpness as f32),

@@ -32,12 +32,6 @@ pub struct Failure {
     pub op: usize,
 }
 
-impl From<EulerError> for Fault {
-    fn from(error: EulerError) -> Self {
-        Self::Error(error.to_string())
-    }
-}
-
 impl From<HeapFull> for Fault {
     fn from(_: HeapFull) -> Self {
         Self::Error("the arrays and dictionaries of this script take too much memory".to_owned())
@@ -178,8 +172,8 @@ impl Machine {
         self.heap.array(id)
     }
 
-    /// A value as a message shows it.
-    pub fn show(&self, value: &Value) -> String {
+    /// A value as a message about `mesh` shows it.
+    pub fn show(&self, value: &Value, mesh: &Mesh) -> String {
         match value {
             Value::Number(x) => x.to_string(),
             Value::Text(id) => format!("\"{}\"", self.strings.get(*id)),
@@ -187,19 +181,9 @@ impl Machine {
             Value::Vec2(v) => format!("({}, {})", v.x, v.y),
             Value::Vec3(v) => format!("({}, {}, {})", v.x, v.y, v.z),
             Value::Array(id) => format!("array of {}", self.heap.array(*id).len()),
-            Value::Node(node) => show_node(*node),
+            Value::Node(node) => mesh.describe(*node),
             Value::Dict(_) | Value::Procedure(_) | Value::Mark => value.kind().to_owned(),
         }
-    }
-}
-
-/// A node as a message shows it.
-pub fn show_node(node: Node) -> String {
-    match node {
-        Node::Vertex(v) => format!("vertex {}", v.0),
-        Node::HalfEdge(h) => format!("half-edge {}", h.0),
-        Node::Face(f) if f.is_boundary() => format!("boundary loop {}", f.index()),
-        Node::Face(f) => format!("face {}", f.0),
     }
 }
 
@@ -361,9 +345,19 @@ impl Execution<'_, '_, '_> {
         stack.len().checked_sub(depth + 1).map(|at| stack[at]).ok_or_else(underflow)
     }
 
+    /// A value as a message shows it.
+    pub(super) fn show(&self, value: &Value) -> String {
+        self.machine.show(value, self.environment.mesh)
+    }
+
+    /// What an Euler operator gave, its error in the user's terms.
+    pub(super) fn euler<T>(&self, result: Result<T, EulerError>) -> Result<T, Fault> {
+        result.map_err(|refused| error(refused.message(|node| self.environment.mesh.describe(node))))
+    }
+
     /// A value with its kind, for messages.
     pub(super) fn describe(&self, value: &Value) -> String {
-        let shown = self.machine.show(value);
+        let shown = self.show(value);
         match value {
             Value::Number(_) | Value::Text(_) | Value::Name(_) | Value::Vec2(_) | Value::Vec3(_) => {
                 format!("the {} {shown}", value.kind())

@@ -25,7 +25,7 @@ mod word;
 
 pub use budget::{Budget, Stop};
 pub use compile::{Scope, compile};
-pub use machine::{Environment, Failure, Fault, Machine, show_node};
+pub use machine::{Environment, Failure, Fault, Machine};
 pub use program::{Program, StringId, Strings};
 pub use source::{Diagnostic, Source, Span};
 pub use value::Value;

@@ -5,7 +5,7 @@ use super::plan::{Hop, Reach};
 use super::queue::Queue;
 use super::ruleset::{Rule, RuleSet};
 use super::search::{Search, View, bind};
-use crate::gml::{Budget, Environment, Failure, Fault, Machine, Program, Stop, Value, show_node};
+use crate::gml::{Budget, Environment, Failure, Fault, Machine, Program, Stop, Value};
 use crate::job::{Cancelled, Job};
 use crate::mesh::{Checkpoint, FaceId, Mesh, Node, Symbol};
 use std::collections::BTreeMap;
@@ -18,14 +18,22 @@ pub struct Limits {
     pub applications: u64,
     /// Steps of scripts and of the search for matches.
     pub steps: u64,
+    /// Changes that scripts make to the mesh: each element made or removed, each vertex moved, each attribute, link and
+    /// sharpness set counts. Bounds the memory, about 150 bytes each at most.
+    pub edits: u64,
     /// Time; `None` for as long as it takes. A run that ends by time is not reproducible.
     pub time: Option<Duration>,
 }
 
 impl Default for Limits {
-    /// 10 million applications, 10^9 steps, one minute.
+    /// 10 million applications, 10^9 steps, 20 million changes, one minute.
     fn default() -> Self {
-        Self { applications: 10_000_000, steps: 1_000_000_000, time: Some(Duration::from_secs(60)) }
+        Self {
+            applications: 10_000_000,
+            steps: 1_000_000_000,
+            edits: 20_000_000,
+            time: Some(Duration::from_secs(60)),
+        }
     }
 }
 
@@ -140,7 +148,7 @@ impl<'a> Run<'a> {
             mesh,
             parameters,
             symbols,
-            budget: Budget::new(options.limits.steps, deadline, options.job),
+            budget: Budget::new(options.limits.steps, options.limits.edits, deadline, options.job),
             limits: options.limits,
             machine: Machine::new(&rules.strings),
             search: Search::default(),
@@ -314,14 +322,17 @@ impl<'a> Run<'a> {
             parameters: self.parameters,
             budget: &mut self.budget,
         };
-        if let Err(failure) = self.machine.run(&rule.action, &mut environment) {
-            return Err(self.script_error(rule, &rule.action, &failure));
-        }
-        if !self.machine.stack().is_empty() {
+        let failure = self.machine.run(&rule.action, &mut environment).err().or_else(|| {
             let left: Vec<String> =
-                self.machine.stack().iter().map(|value| self.machine.show(value)).collect();
-            let message = format!("the action must leave the stack empty, but leaves {}", left.join(" "));
-            let failure = Failure { fault: Fault::Error(message), op: rule.action.last_op() };
+                self.machine.stack().iter().map(|value| self.machine.show(value, self.mesh)).collect();
+            (!left.is_empty()).then(|| {
+                let message = format!("the action must leave the stack empty, but leaves {}", left.join(" "));
+                Failure { fault: Fault::Error(message), op: rule.action.last_op() }
+            })
+        });
+        if let Some(failure) = failure {
+            // The place is told as it was when the rule was applied.
+            self.mesh.rollback(before);
             return Err(self.script_error(rule, &rule.action, &failure));
         }
         self.counts[number] += 1;
@@ -374,9 +385,9 @@ impl<'a> Run<'a> {
         }
     }
 
-    fn place(&self, rule: &Rule, bound: &[u32]) -> Place {
-        let nodes = rule.nodes.iter().zip(bound);
-        Place(nodes.map(|((name, domain), &id)| (name.clone(), Node::new(*domain, id))).collect())
+    fn place(&self, rule: &Rule) -> Place {
+        let nodes = rule.nodes.iter().zip(&self.bound);
+        Place::new(self.mesh, nodes.map(|((name, domain), &id)| (name.as_str(), Node::new(*domain, id))))
     }
 
     fn script_error(&self, rule: &Rule, program: &Program, failure: &Failure) -> RunError {
@@ -387,7 +398,7 @@ impl<'a> Run<'a> {
         };
         RunError::Script {
             rule: rule.name.clone(),
-            place: self.place(rule, &self.bound),
+            place: self.place(rule),
             diagnostic: Box::new(program.error(failure.op, message)),
         }
     }
@@ -396,6 +407,7 @@ impl<'a> Run<'a> {
         match stop {
             Stop::Cancelled => RunError::Cancelled(Cancelled),
             Stop::Steps => self.runaway(format!("more than {} steps", self.limits.steps), rule),
+            Stop::Edits => self.runaway(format!("more than {} changes of the mesh", self.limits.edits), rule),
             Stop::Time => {
                 let time = self.limits.time.unwrap_or_default();
                 self.runaway(format!("more than {} s", time.as_secs_f64()), rule)
@@ -408,15 +420,22 @@ impl<'a> Run<'a> {
             diagnostic: rule.diagnostic(&format!("{limit}, here in rule {}", rule.name)),
             limit,
             rule: rule.name.clone(),
-            place: self.place(rule, &self.bound),
+            place: self.place(rule),
         }
     }
 
     fn broken(&self, face: FaceId, problem: String) -> RunError {
         let last = self.touched.iter().rev().find(|(touched, _)| *touched == face);
         let rule = &self.rules.rules[last.map_or(0, |(_, rule)| *rule as usize)];
-        let message = format!("rule {} was the last to change {}", rule.name, show_node(Node::Face(face)));
-        RunError::BrokenFace { rule: rule.name.clone(), problem, diagnostic: rule.diagnostic(&message) }
+        let message =
+            format!("rule {} was the last to change {}", rule.name, self.mesh.describe(Node::Face(face)));
+        let position = self.mesh.place(Node::Face(face));
+        RunError::BrokenFace {
+            rule: rule.name.clone(),
+            problem,
+            position,
+            diagnostic: rule.diagnostic(&message),
+        }
     }
 }
 

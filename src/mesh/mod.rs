@@ -10,6 +10,7 @@ mod attributes;
 mod build;
 mod compact;
 mod defect;
+mod describe;
 mod euler;
 mod ids;
 mod log;
@@ -23,6 +24,7 @@ mod walk;
 pub use attributes::Symbol;
 pub use compact::Renumbering;
 pub use defect::{Defect, Defects};
+pub use describe::show_point;
 pub use euler::EulerError;
 pub use ids::{Domain, FaceId, HalfEdgeId, Node, VertexId};
 pub use log::Checkpoint;
@@ -62,6 +64,8 @@ pub struct Mesh {
     faces: Vec<u32>,
     /// One half-edge per boundary loop, `DEAD` for a removed one.
     loops: Vec<u32>,
+    /// Vertices from this id on were made since the mesh was built or compacted.
+    first_new_vertex: u32,
     /// Faces from this id on were split off from others; the ones below were there from the start.
     first_new_face: u32,
     /// The face each face from `first_new_face` on was split off from.
