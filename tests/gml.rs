@@ -28,7 +28,8 @@ fn run_on(mesh: &mut Mesh, text: &str) -> Result<String, String> {
     })?;
     let mut machine = Machine::new(&strings);
     let mut budget = Budget::new(1_000_000, 100_000, None, None);
-    let mut environment = Environment { mesh, nodes: &[e.0, 7], parameters: &[0.25], budget: &mut budget };
+    let mut environment =
+        Environment { mesh, nodes: &[e.0, 7], parameters: &[0.25], examples: None, budget: &mut budget };
     machine.run(&program, &mut environment).map_err(|failure| match failure.fault {
         Fault::Error(message) => format!("{message} [{}]", program.word(failure.op)),
         Fault::Thrown(value) => format!("threw {value}"),

@@ -33,7 +33,9 @@ impl Execution<'_, '_, '_> {
         let symbol = self.symbol(key);
         let machine = &mut *self.machine;
         let mesh = &*self.environment.mesh;
-        let value = match symbol.and_then(|symbol| mesh.attribute(node, symbol)) {
+        let set = symbol.and_then(|symbol| mesh.attribute(node, symbol));
+        let example = || self.environment.examples?.get(&*machine.strings.get(key));
+        let value = match set.or_else(example) {
             None => {
                 let name = machine.strings.get(key);
                 return Err(error(format!("{} has no attribute `{name}`", mesh.describe(node))));

@@ -6,6 +6,7 @@ use super::kind::Kinds;
 use super::program::{Op, Program, StringId, Strings};
 use super::value::{Heap, HeapFull, Value};
 use crate::mesh::{Checkpoint, EulerError, Mesh, Node, Symbol};
+use std::collections::BTreeMap;
 
 /// Procedures and loops that may be open at once.
 const DEEPEST: usize = 1000;
@@ -126,6 +127,8 @@ pub struct Environment<'a, 'job> {
     pub nodes: &'a [u32],
     /// Values of the parameters, in the order of [`Scope::parameters`](super::Scope).
     pub parameters: &'a [f64],
+    /// Values of attributes that are read where they are missing.
+    pub examples: Option<&'a BTreeMap<String, crate::mesh::Value>>,
     /// What may still be done.
     pub budget: &'a mut Budget<'job>,
 }

@@ -117,6 +117,12 @@ pub enum RunError {
         /// The rule's place in its file.
         diagnostic: Box<Diagnostic>,
     },
+    /// The rules do not do what a trace says.
+    #[error("the trace cannot be played: {problem}")]
+    Replay {
+        /// What differs, and where.
+        problem: String,
+    },
     /// The caller cancelled.
     #[error(transparent)]
     Cancelled(#[from] Cancelled),

@@ -7,15 +7,22 @@
 
 mod case;
 mod error;
+mod layout;
+mod lint;
 mod parse;
 mod pattern;
 mod plan;
 mod queue;
+mod replay;
 mod ruleset;
 mod run;
+mod sample;
 mod search;
+mod trace;
 
 pub use case::{Case, CaseError};
 pub use error::{Place, RulesError, RunError};
-pub use ruleset::{Loader, Parameter, Rule, RuleSet};
+pub use ruleset::{Input, Loader, Parameter, Rule, RuleSet};
 pub use run::{Limits, Outcome, RunOptions, run};
+pub use sample::Sample;
+pub use trace::{Application, Pass, Trace, Tracer, digest};

@@ -3,11 +3,11 @@
 use super::error::RulesError;
 use super::pattern::{Pattern, infer_kinds};
 use super::plan::{Graph, NodePlan, Step, edges, number_tests};
-use super::ruleset::{Forbidden, Loader, Parameter, Rule, RuleSet};
+use super::ruleset::{Forbidden, Input, Loader, Parameter, Rule, RuleSet};
 use crate::gml::{
-    Cursor, Diagnostic, Leaves, Scope, Source, Span, Strings, check, compile_tokens, is_word, script,
+    Cursor, Diagnostic, Effects, Leaves, Scope, Source, Span, Strings, check, compile_tokens, is_word, script,
 };
-use crate::mesh::Domain;
+use crate::mesh::{Domain, Value};
 use std::sync::Arc;
 
 /// Files that may include one another in a row.
@@ -17,7 +17,7 @@ const LONGEST: usize = 1 << 24;
 /// Parameters and rules that a rule set may have.
 const MOST_PARAMETERS: usize = 1000;
 const MOST_RULES: usize = 10_000;
-const KEYWORDS: [&str; 4] = ["include", "parameter", "phase", "rule"];
+const KEYWORDS: [&str; 6] = ["example", "include", "input", "parameter", "phase", "rule"];
 
 pub(super) fn parse(name: &str, text: &str, loader: &Loader<'_>) -> Result<RuleSet, RulesError> {
     let mut reader = Reader {
@@ -97,6 +97,8 @@ impl Reader<'_> {
         let span = if keyword.is_empty() { cursor.span_here() } else { cursor.span_from(start) };
         match keyword.as_str() {
             "include" => self.include(cursor),
+            "example" => self.example(cursor),
+            "input" => self.input(cursor),
             "parameter" => self.parameter(cursor),
             "phase" => {
                 let (name, span) = expect_name(cursor, "the name of a phase")?;
@@ -167,12 +169,51 @@ impl Reader<'_> {
         }
         expect_keyword(cursor, "unit")?;
         let (unit, _) = expect_name(cursor, "a unit such as length, fraction, count or angle")?;
-        cursor.skip_space();
-        if cursor.peek() != Some('"') {
-            return Err(cursor.error(cursor.span_here(), "expected one line of help in quotes"));
-        }
-        let help = cursor.text()?;
+        let help = expect_help(cursor)?;
         self.rules.parameters.push(Parameter { name, default, low, high, unit, help });
+        self.rules.declared.push((Arc::clone(cursor.source()), span));
+        Ok(())
+    }
+
+    /// `example NAME VALUE`.
+    fn example(&mut self, cursor: &mut Cursor) -> Result<(), Diagnostic> {
+        let (name, span) = expect_name(cursor, "the name of an attribute")?;
+        if self.rules.examples.contains_key(&name) {
+            return Err(cursor.error(span, format!("example `{name}` is there twice")));
+        }
+        cursor.skip_space();
+        let start = cursor.offset();
+        let value = match cursor.peek() {
+            Some('"') => Value::text(&cursor.text()?),
+            Some('[') => {
+                cursor.bump();
+                cursor.skip_space();
+                let mut numbers = Vec::new();
+                while cursor.at_number() {
+                    numbers.push(cursor.number()?);
+                    cursor.skip_space();
+                }
+                if !cursor.eat(']') {
+                    return Err(
+                        cursor.error(cursor.span_from(start), "an array of numbers is written [ 0.25 0.5 ]")
+                    );
+                }
+                Value::Numbers(numbers.into())
+            }
+            _ => Value::Number(expect_number(cursor)?.0),
+        };
+        self.rules.examples.insert(name, value);
+        Ok(())
+    }
+
+    /// `input NAME "help"`.
+    fn input(&mut self, cursor: &mut Cursor) -> Result<(), Diagnostic> {
+        let (name, span) = expect_name(cursor, "the name of an attribute or a link")?;
+        if self.rules.inputs.iter().any(|known| known.name == name) {
+            return Err(cursor.error(span, format!("input `{name}` is declared twice")));
+        }
+        let help = expect_help(cursor)?;
+        self.rules.inputs.push(Input { name, help });
         Ok(())
     }
 
@@ -217,6 +258,7 @@ impl Reader<'_> {
         let mut reach = graph.reach(anchor_node);
         let mut forbidden = Vec::new();
         let mut conditions = Vec::new();
+        let mut effects = Effects::default();
         let parameters: Vec<String> = self.rules.parameters.iter().map(|p| p.name.clone()).collect();
         let action = loop {
             cursor.skip_space();
@@ -267,7 +309,7 @@ impl Reader<'_> {
                     let mut joined = Graph { nodes: rest.nodes.clone(), edges: graph.edges.clone() };
                     joined.edges.extend(rest.edges.iter().copied());
                     reach.extend(joined.reach(anchor_node).into_iter().skip(nodes.len()));
-                    forbidden.push(Forbidden { plans: rest.nodes, plan });
+                    forbidden.push(Forbidden { pattern: inner, span: part_span, plans: rest.nodes, plan });
                 }
                 "where" | "action" => {
                     let brace = expect_brace(cursor, "a script")?;
@@ -280,7 +322,10 @@ impl Reader<'_> {
                     let program = compile_tokens(&source, &tokens, end, &scope, strings, &mut self.errors);
                     if mistakes == self.errors.len() {
                         let leaves = if part == "action" { Leaves::Nothing } else { Leaves::OneNumber };
-                        self.errors.extend(check(&program, leaves));
+                        let checked = check(&program, leaves);
+                        self.errors.extend(checked.mistake);
+                        self.rules.script_warnings.extend(checked.warnings);
+                        effects = checked.effects;
                     }
                     if part == "action" {
                         break program;
@@ -302,6 +347,7 @@ impl Reader<'_> {
             source,
             span,
             nodes,
+            pattern,
             plans: graph.nodes,
             plan,
             anchor,
@@ -310,6 +356,7 @@ impl Reader<'_> {
             looks_further: !conditions.is_empty() || seeds > 1,
             conditions,
             action,
+            effects,
             reach,
         });
         Ok(())
@@ -352,6 +399,14 @@ fn expect_keyword(cursor: &mut Cursor, keyword: &str) -> Result<(), Diagnostic> 
     let what = format!("`{keyword}`");
     let (name, span) = expect_name(cursor, &what)?;
     if name == keyword { Ok(()) } else { Err(cursor.error(span, format!("expected {what}"))) }
+}
+
+fn expect_help(cursor: &mut Cursor) -> Result<String, Diagnostic> {
+    cursor.skip_space();
+    if cursor.peek() != Some('"') {
+        return Err(cursor.error(cursor.span_here(), "expected one line of help in quotes"));
+    }
+    cursor.text()
 }
 
 /// A number, `inf` or `-inf`.

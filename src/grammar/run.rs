@@ -3,8 +3,9 @@
 use super::error::{Place, RunError};
 use super::plan::{Hop, Reach};
 use super::queue::Queue;
-use super::ruleset::{Rule, RuleSet};
+use super::ruleset::{Examples, Rule, RuleSet};
 use super::search::{Search, View, bind};
+use super::trace::{Application, Pass, Tracer, digest};
 use crate::gml::{Budget, Environment, Failure, Fault, Machine, Program, Stop, Value};
 use crate::job::{Cancelled, Job};
 use crate::mesh::{Checkpoint, FaceId, Mesh, Node, Symbol};
@@ -46,6 +47,8 @@ pub struct RunOptions<'a> {
     pub limits: Limits,
     /// Watches and cancels the run.
     pub job: Option<&'a Job>,
+    /// Records where rules are applied, or says where to apply them.
+    pub tracer: Option<&'a Tracer>,
 }
 
 /// What a run did.
@@ -67,7 +70,7 @@ pub struct Outcome {
 pub fn run(rules: &RuleSet, mesh: &mut Mesh, options: &RunOptions<'_>) -> Result<Outcome, RunError> {
     let parameters = parameters(rules, options)?;
     let checkpoint = mesh.begin();
-    let result = Run::new(rules, mesh, &parameters, options).and_then(Run::finish);
+    let result = Run::new(rules, mesh, &parameters, options).rewrite(options.tracer);
     match result {
         Ok(outcome) => {
             mesh.commit(checkpoint);
@@ -78,6 +81,25 @@ pub fn run(rules: &RuleSet, mesh: &mut Mesh, options: &RunOptions<'_>) -> Result
             Err(error)
         }
     }
+}
+
+/// Applies rule number `rule` once to the elements `nodes`, whatever its conditions say; attributes that its action
+/// misses have the values of the examples. The mesh is as it was when this fails.
+pub(super) fn apply_to(rules: &RuleSet, rule: usize, mesh: &mut Mesh, nodes: &[u32]) -> Result<(), RunError> {
+    let options = RunOptions::default();
+    let parameters = parameters(rules, &options)?;
+    let checkpoint = mesh.begin();
+    let mut run = Run::new(rules, mesh, &parameters, &options);
+    run.examples = Some(&rules.examples);
+    run.bound[..nodes.len()].copy_from_slice(nodes);
+    match run.apply_here(rule).and_then(|()| run.outcome()) {
+        Ok(_) => mesh.commit(checkpoint),
+        Err(error) => {
+            mesh.rollback(checkpoint);
+            return Err(error);
+        }
+    }
+    Ok(())
 }
 
 fn parameters(rules: &RuleSet, options: &RunOptions<'_>) -> Result<Vec<f64>, RunError> {
@@ -101,23 +123,27 @@ fn parameters(rules: &RuleSet, options: &RunOptions<'_>) -> Result<Vec<f64>, Run
         .collect()
 }
 
-struct Run<'a> {
-    rules: &'a RuleSet,
-    mesh: &'a mut Mesh,
+pub(super) struct Run<'a> {
+    pub(super) rules: &'a RuleSet,
+    pub(super) mesh: &'a mut Mesh,
     parameters: &'a [f64],
-    symbols: Vec<Symbol>,
+    /// What scripts find where an attribute is missing.
+    examples: Option<&'a Examples>,
+    pub(super) symbols: Vec<Symbol>,
     budget: Budget<'a>,
     limits: Limits,
     machine: Machine,
     search: Search,
     forbidden_search: Search,
     /// The elements of the present match.
-    bound: Vec<u32>,
+    pub(super) bound: Vec<u32>,
     queues: Vec<Queue>,
     /// Applications when each rule's queue was filled last.
     seeded_at: Vec<u64>,
     counts: Vec<u64>,
     total: u64,
+    /// What is done, when that is recorded.
+    recorded: Option<Vec<Application>>,
     /// Faces that each application changed, with its rule.
     touched: Vec<(FaceId, u32)>,
     /// The rules of the present phase.
@@ -130,12 +156,7 @@ struct Run<'a> {
 }
 
 impl<'a> Run<'a> {
-    fn new(
-        rules: &'a RuleSet,
-        mesh: &'a mut Mesh,
-        parameters: &'a [f64],
-        options: &RunOptions<'a>,
-    ) -> Result<Self, RunError> {
+    fn new(rules: &'a RuleSet, mesh: &'a mut Mesh, parameters: &'a [f64], options: &RunOptions<'a>) -> Self {
         let symbols = rules.names.iter().map(|name| mesh.intern(name)).collect();
         let deadline = options.limits.time.and_then(|time| Instant::now().checked_add(time));
         let most_nodes = rules
@@ -143,10 +164,11 @@ impl<'a> Run<'a> {
             .iter()
             .flat_map(|rule| rule.forbidden.iter().map(|f| f.plans.len()).chain([rule.plans.len()]))
             .max();
-        Ok(Self {
+        Self {
             rules,
             mesh,
             parameters,
+            examples: None,
             symbols,
             budget: Budget::new(options.limits.steps, options.limits.edits, deadline, options.job),
             limits: options.limits,
@@ -158,16 +180,35 @@ impl<'a> Run<'a> {
             seeded_at: vec![0; rules.rules.len()],
             counts: vec![0; rules.rules.len()],
             total: 0,
+            recorded: None,
             touched: Vec::new(),
             phase: 0..0,
             changed: Vec::new(),
             faces: Vec::new(),
             near: Vec::new(),
             walk: [Vec::new(), Vec::new()],
-        })
+        }
     }
 
-    fn finish(mut self) -> Result<Outcome, RunError> {
+    /// Rewrites the mesh: by its own search, or as the tracer says.
+    fn rewrite(mut self, tracer: Option<&Tracer>) -> Result<Outcome, RunError> {
+        let Some(tracer) = tracer else {
+            self.run_phases()?;
+            return self.outcome();
+        };
+        if let Some(pass) = tracer.next_pass() {
+            self.follow(pass.as_ref())?;
+            return self.outcome();
+        }
+        let before = digest(self.mesh);
+        self.recorded = Some(Vec::new());
+        self.run_phases()?;
+        let applications = self.recorded.take().unwrap_or_default();
+        tracer.add(Pass { applications, before, after: digest(self.mesh) });
+        self.outcome()
+    }
+
+    fn run_phases(&mut self) -> Result<(), RunError> {
         let rules = self.rules;
         for phase in &rules.phases {
             for rule in phase.clone() {
@@ -176,6 +217,12 @@ impl<'a> Run<'a> {
             self.phase = phase.clone();
             self.run_phase(phase.clone())?;
         }
+        Ok(())
+    }
+
+    /// What was done, after a look at the faces that were changed.
+    fn outcome(self) -> Result<Outcome, RunError> {
+        let rules = self.rules;
         let mut faces: Vec<FaceId> = self.touched.iter().map(|(face, _)| *face).collect();
         faces.sort_unstable();
         faces.dedup();
@@ -235,24 +282,32 @@ impl<'a> Run<'a> {
             match self.find(rule, anchor) {
                 Ok(false) => {}
                 Ok(true) => {
-                    self.apply(number, anchor)?;
+                    self.apply_here(number)?;
+                    // The same anchor may have another match.
+                    self.queues[number].push(anchor);
                     return Ok(true);
                 }
-                Err(Failed::Stopped(stop)) => return Err(self.stopped(stop, rule)),
-                Err(Failed::Script(condition, failure)) => {
-                    return Err(self.script_error(rule, &rule.conditions[condition], &failure));
-                }
-                Err(Failed::NotOneNumber(condition)) => {
-                    let program = &rule.conditions[condition];
-                    let failure = Failure {
-                        fault: Fault::Error("a condition must leave one number, and nothing else".to_owned()),
-                        op: program.last_op(),
-                    };
-                    return Err(self.script_error(rule, program, &failure));
-                }
+                Err(failed) => return Err(self.failed(rule, failed)),
             }
         }
         Ok(false)
+    }
+
+    pub(super) fn failed(&self, rule: &Rule, failed: Failed) -> RunError {
+        match failed {
+            Failed::Stopped(stop) => self.stopped(stop, rule),
+            Failed::Script(condition, failure) => {
+                self.script_error(rule, &rule.conditions[condition], &failure)
+            }
+            Failed::NotOneNumber(condition) => {
+                let program = &rule.conditions[condition];
+                let failure = Failure {
+                    fault: Fault::Error("a condition must leave one number, and nothing else".to_owned()),
+                    op: program.last_op(),
+                };
+                self.script_error(rule, program, &failure)
+            }
+        }
     }
 
     /// Looks for a match with its anchor at `id`; the match is in `bound`.
@@ -267,13 +322,18 @@ impl<'a> Run<'a> {
         let mut found =
             self.search.start(view, &rule.plan, &rule.plans, 1, &mut self.bound, &mut self.budget)?;
         while found {
-            if !self.is_forbidden(rule)? && self.conditions_hold(rule)? {
+            if self.stands(rule)? {
                 return Ok(true);
             }
             let view = View { mesh: self.mesh, symbols: &self.symbols };
             found = self.search.resume(view, &rule.plan, &rule.plans, &mut self.bound, &mut self.budget)?;
         }
         Ok(false)
+    }
+
+    /// No `not` excludes the match in `bound`, and the conditions hold.
+    pub(super) fn stands(&mut self, rule: &Rule) -> Result<bool, Failed> {
+        Ok(!self.is_forbidden(rule)? && self.conditions_hold(rule)?)
     }
 
     fn is_forbidden(&mut self, rule: &Rule) -> Result<bool, Failed> {
@@ -293,6 +353,7 @@ impl<'a> Run<'a> {
                 mesh: self.mesh,
                 nodes: &self.bound,
                 parameters: self.parameters,
+                examples: self.examples,
                 budget: &mut self.budget,
             };
             self.machine.run(condition, &mut environment).map_err(|failure| Failed::Script(i, failure))?;
@@ -309,17 +370,22 @@ impl<'a> Run<'a> {
     }
 
     /// Runs the action of a rule on the match in `bound`.
-    fn apply(&mut self, number: usize, anchor: u32) -> Result<(), RunError> {
+    pub(super) fn apply_here(&mut self, number: usize) -> Result<(), RunError> {
         let rule = &self.rules.rules[number];
         if self.total >= self.limits.applications {
             let limit = format!("more than {} applications", self.limits.applications);
             return Err(self.runaway(limit, rule));
+        }
+        if self.recorded.is_some() {
+            let application = Application::new(&rule.name, &self.place(rule));
+            self.recorded.get_or_insert_default().push(application);
         }
         let before = self.mesh.log_position();
         let mut environment = Environment {
             mesh: self.mesh,
             nodes: &self.bound,
             parameters: self.parameters,
+            examples: self.examples,
             budget: &mut self.budget,
         };
         let failure = self.machine.run(&rule.action, &mut environment).err().or_else(|| {
@@ -337,8 +403,6 @@ impl<'a> Run<'a> {
         }
         self.counts[number] += 1;
         self.total += 1;
-        // The same anchor may have another match.
-        self.queues[number].push(anchor);
         self.after(number, before);
         Ok(())
     }
@@ -464,7 +528,7 @@ fn anchors(view: View<'_>, node: Node, reach: &Reach, lists: &mut [Vec<u32>; 2],
 }
 
 /// Why a search for a match ended early.
-enum Failed {
+pub(super) enum Failed {
     Stopped(Stop),
     Script(usize, Failure),
     NotOneNumber(usize),
