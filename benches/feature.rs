@@ -3,11 +3,10 @@
 //! `cargo bench --bench feature`. Medians over freshly built meshes; building and reading are not counted.
 
 use glam::DVec3;
-use std::collections::BTreeMap;
 use std::f64::consts::TAU;
 use std::path::Path;
 use std::time::Instant;
-use welt::feature::{self, Feature, GROOVE, Length, Options, Report};
+use welt::feature::{self, Options, Report, Request};
 use welt::job::Job;
 use welt::mark::{Selection, Selector};
 use welt::mesh::{Mesh, Polygons};
@@ -32,11 +31,8 @@ fn torus(n: u32, m: u32) -> Polygons {
 }
 
 fn measure(name: &str, polygons: &Polygons, mark: &str) {
-    let rules = feature::linear_rules().expect("rules");
-    let feature = Feature { rules: &rules, profile: Some(&GROOVE) };
-    let lengths: BTreeMap<String, Length> =
-        [("width".to_owned(), Length::OfEdge(0.3)), ("depth".to_owned(), Length::OfEdge(0.1))].into();
-    let options = Options { lengths, ..Options::default() };
+    let request = Request::features(&["groove"], &["width=30%", "depth=10%"]).expect("a request");
+    let options = Options::default();
     let mut runs: Vec<(f64, Report)> = (0..RUNS)
         .map(|_| {
             let mut mesh = Mesh::from_polygons(polygons).expect("a mesh");
@@ -44,7 +40,7 @@ fn measure(name: &str, polygons: &Polygons, mark: &str) {
             let selector = Selector::parse(mark).expect("a selector");
             let selection = Selection::resolve(&mesh, &[selector]).expect("marks");
             let report =
-                feature::apply(&mut mesh, &selection, &feature, &options, &Job::new()).expect("applied");
+                feature::apply(&mut mesh, &selection, &request, &options, &Job::new()).expect("applied");
             (start.elapsed().as_secs_f64() * 1e3, report)
         })
         .collect();

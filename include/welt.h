@@ -988,9 +988,10 @@ int32_t welt_feature_options_init(welt_feature_options *options,
                                   size_t size);
 
 /*
- Lists the features that welt_feature_apply knows.
+ Lists the features that come with the library.
 
- list: receives a report whose JSON is an array of features, each with name, help and parameters (name, default, help);
+ list: receives a report whose JSON is an array of features, each with name, help and parameters: name, unit (length or
+ count), default (a number in model units, or a text such as "30%"), low, high (null where only the mesh sets a bound), help;
  free it with welt_report_free.
 
  Since: 0.1.
@@ -1000,29 +1001,32 @@ int32_t welt_feature_list(welt_report **list,
                           welt_error **error);
 
 /*
- Applies a feature: rewrites the mesh along the marked edges, fits it to the surface as it was, displaces it to the asked
- width and depth.
+ Applies features: rewrites the mesh along the marked edges, fits it to the surface as it was, displaces it to the asked
+ widths, depths and heights.
 
  mesh: is changed; vertices keep their numbers, new ones follow.
- selection: the marked edges, made on this mesh, whose edges are unchanged since.
- name: the feature, one that welt_feature_list lists, such as groove.
- name_length: in bytes, SIZE_MAX for a NUL-terminated name.
- settings: may be NULL; NAME=VALUE, separated by blanks, such as "width=0.2 depth=30%": model units, or a percentage of
- the length of the marked edge.
+ selection: the marked edges, made on this mesh, whose edges are unchanged since. A mark asks for the feature that its kind
+ (#kind) names; one without a kind asks for the first feature.
+ features: one or more, one per line: FEATURE or KIND=FEATURE, where FEATURE is one that welt_feature_list lists, such as
+ groove, or a profile file ending in .toml. Features of the list that marks name need not be given here.
+ features_length: in bytes, SIZE_MAX for a NUL-terminated text.
+ settings: may be NULL; NAME=VALUE, or KIND.NAME=VALUE for one feature of several, separated by blanks, such as
+ "width=0.2 depth=30%": model units, or a percentage of the length of the marked edge.
  settings_length: in bytes, SIZE_MAX for a NUL-terminated text.
  options: may be NULL for defaults.
  job: may be NULL.
- report: may be NULL; else receives what was done: counts, rules, leftovers, width and depth asked and reached,
- deviations, warnings. Free it with welt_report_free.
+ report: may be NULL; else receives what was done: counts, rules, leftovers, dimensions asked and reached, deviations,
+ warnings. Free it with welt_report_free.
 
  Fails with WELT_ERROR_ARGUMENT (an unknown feature or setting, a selection of another mesh, a width that an edge cannot
- take: the place is the edge), WELT_ERROR_RULE, WELT_ERROR_CANCELLED; the mesh is as it was before then. Since: 0.1.
+ take: the place is the edge), WELT_ERROR_FILE, WELT_ERROR_RULE, WELT_ERROR_CANCELLED; the mesh is as it was before then.
+ Since: 0.1.
  */
 WELT_API
 int32_t welt_feature_apply(welt_mesh *mesh,
                            const welt_selection *selection,
-                           const char *name,
-                           size_t name_length,
+                           const char *features,
+                           size_t features_length,
                            const char *settings,
                            size_t settings_length,
                            const welt_feature_options *options,

@@ -4,8 +4,7 @@
 //! nothing here depends on how the library measures.
 
 use glam::DVec3;
-use std::collections::BTreeMap;
-use welt::feature::{self, Feature, GROOVE, Length, Options, RIDGE, Report};
+use welt::feature::{self, Options, Report, Request};
 use welt::job::Job;
 use welt::mark::{Selection, Selector};
 use welt::mesh::{Mesh, Polygons};
@@ -30,16 +29,13 @@ fn square() -> Mesh {
     sheet(DVec3::X, DVec3::Y)
 }
 
-fn apply(mesh: &mut Mesh, marks: &[String], profile: &feature::Profile, set: &[(&str, f64)]) -> Report {
+fn apply(mesh: &mut Mesh, marks: &[String], feature: &str, set: &[(&str, f64)]) -> Report {
     let selectors: Vec<Selector> = marks.iter().map(|m| Selector::parse(m).expect("a selector")).collect();
     let selection = Selection::resolve(mesh, &selectors).expect("marks");
-    let rules = feature::linear_rules().expect("rules");
-    let options = Options {
-        lengths: set.iter().map(|&(name, x)| (name.to_owned(), Length::Units(x))).collect::<BTreeMap<_, _>>(),
-        ..Options::default()
-    };
-    let feature = Feature { rules: &rules, profile: Some(profile) };
-    let report = feature::apply(mesh, &selection, &feature, &options, &Job::new()).expect("applied");
+    let settings: Vec<String> = set.iter().map(|(name, x)| format!("{name}={x}")).collect();
+    let request = Request::features(&[feature], &settings).expect("a request");
+    let report =
+        feature::apply(mesh, &selection, &request, &Options::default(), &Job::new()).expect("applied");
     mesh.validate_control_mesh().expect("valid");
     report
 }
@@ -122,21 +118,21 @@ fn width_and_depth_are_reached_within_a_percent() {
         ("stretched along", DVec3::X, DVec3::Y * 2.0),
     ];
     for (name, u, v) in cases {
-        for (profile, extent, width) in [(&GROOVE, "depth", 0.3), (&RIDGE, "height", 0.45)] {
+        for (feature, extent, width) in [("groove", "depth", 0.3), ("ridge", "height", 0.45)] {
             let width = width * u.length() * (1.0 - (u.dot(v) / u.length() / v.length()).powi(2)).sqrt();
             let mut mesh = sheet(u, v);
             let report =
-                apply(&mut mesh, &["ring:27,28".into()], profile, &[("width", width), (extent, DEPTH)]);
+                apply(&mut mesh, &["ring:27,28".into()], feature, &[("width", width), (extent, DEPTH)]);
             assert_eq!(report.marks, 8, "{name}");
             assert_eq!(report.after.vertices, 64 + 3 * 8, "{name}");
             let (reached, depth) = section(&mesh, u, v);
             println!(
                 "{name} {}: width {width:.4} reached {reached:.4}, depth {DEPTH} reached {depth:.5}",
-                profile.name
+                feature
             );
             assert!((reached / width - 1.0).abs() < 0.01, "{name}: width {width} reached {reached}");
             assert!((depth / DEPTH - 1.0).abs() < 0.01, "{name}: depth {depth}");
-            let said = report.width.expect("measured");
+            let said = report.dimension("width").expect("measured");
             assert!(
                 (said.reached_mean / reached - 1.0).abs() < 0.01,
                 "{name}: the report says {}",
@@ -149,7 +145,7 @@ fn width_and_depth_are_reached_within_a_percent() {
 #[test]
 fn straight_valley() {
     let mut mesh = square();
-    apply(&mut mesh, &["ring:27,28".into()], &GROOVE, &[("width", WIDTH), ("depth", DEPTH)]);
+    apply(&mut mesh, &["ring:27,28".into()], "groove", &[("width", WIDTH), ("depth", DEPTH)]);
     let points = limit(&mesh);
     let (low, high) = valley(&points, 0.1, 6.9, |p| p.y, |_| true);
     // docs/linear-features.md, section 2: 1.00.
@@ -165,7 +161,7 @@ fn corner_valley() {
     let mut mesh = square();
     let mut marks = crossed_upwards(3, 0..=3);
     marks.extend(crossed_sideways(3, 4..=7));
-    let report = apply(&mut mesh, &marks, &GROOVE, &[("width", WIDTH), ("depth", DEPTH)]);
+    let report = apply(&mut mesh, &marks, "groove", &[("width", WIDTH), ("depth", DEPTH)]);
     assert!(report.leftovers.is_empty() && report.non_quads.is_empty(), "{report}");
     // 3 per mark and 3 on the diagonal (docs/linear-features.md: 91 vertices on the 7 x 7 sheet).
     assert_eq!(report.after.vertices, 91);
@@ -187,7 +183,7 @@ fn crossing_valley() {
     let report = apply(
         &mut mesh,
         &["ring:27,28".into(), "ring:27,35".into()],
-        &GROOVE,
+        "groove",
         &[("width", WIDTH), ("depth", DEPTH)],
     );
     assert!(report.leftovers.is_empty() && report.non_quads.is_empty(), "{report}");
@@ -205,7 +201,7 @@ fn crossing_valley() {
 fn dead_end_valley() {
     let mut mesh = square();
     let marks = crossed_upwards(3, 0..=3);
-    let report = apply(&mut mesh, &marks, &GROOVE, &[("width", WIDTH), ("depth", DEPTH)]);
+    let report = apply(&mut mesh, &marks, "groove", &[("width", WIDTH), ("depth", DEPTH)]);
     assert!(report.leftovers.is_empty(), "{report}");
     // DE3W: five inner vertices, one triangle (docs/linear-features.md: 81 vertices; 64 + 3 x 4 + 5).
     assert_eq!(report.after.vertices, 81);
@@ -225,7 +221,7 @@ fn a_t_junction_is_left_over_and_said() {
     let mut mesh = square();
     let mut marks = crossed_upwards(3, 0..=3);
     marks.push("ring:27,35".into());
-    let report = apply(&mut mesh, &marks, &GROOVE, &[("width", WIDTH), ("depth", DEPTH)]);
+    let report = apply(&mut mesh, &marks, "groove", &[("width", WIDTH), ("depth", DEPTH)]);
     assert_eq!(report.leftovers.len(), 1, "{report}");
     assert_eq!((report.leftovers[0].marks, report.leftovers[0].vertices.len()), (3, 13));
     assert_eq!(report.non_quads, [(report.leftovers[0].face, 13)]);

@@ -25,10 +25,13 @@ fn mark(mesh: &mut Mesh, index: usize, from: (u32, u32), to: (u32, u32), lines: 
     let at = |(i, j): (u32, u32)| VertexId(j * (SIDE + 1) + i);
     let h = mesh.find_half_edge(at(from), at(to)).expect("an edge");
     let places: Vec<f64> = (1..=lines).map(|k| k as f64 / (lines + 1) as f64).collect();
-    let names = ["cuts", "mark", "color", "t"].map(|name| mesh.intern(name));
-    for h in [h, HalfEdgeId(h.0 ^ 1)] {
+    let names = ["cuts", "lines", "mark", "color", "t"].map(|name| mesh.intern(name));
+    let forward: Vec<f64> = (1..=lines).map(|line| line as f64).collect();
+    let backward: Vec<f64> = forward.iter().rev().copied().collect();
+    for (h, numbers) in [(h, forward), (HalfEdgeId(h.0 ^ 1), backward)] {
         let values = [
             Value::Numbers(places.clone().into()),
+            Value::Numbers(numbers.into()),
             Value::Number(index as f64),
             Value::text("red"),
             Value::Number(0.5),

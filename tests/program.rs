@@ -134,10 +134,10 @@ fn parameters_that_a_feature_cannot_take() {
     let folder = Folder::new("parameters");
     let set = |setting| folder.groove(&["--mark", "ring:1,2", "--set", setting]);
     set("width=3").fails(1, &["edge ", "0.", "width"]);
-    set("breadth=0.2").fails(1, &["no parameter 'breadth'", "width, depth"]);
+    set("breadth=0.2").fails(2, &["no parameter 'breadth'", "width, depth"]);
     set("width").fails(2, &["NAME=VALUE"]);
     set("width=wide").fails(2, &["wide"]);
-    set("width=-1").fails(1, &["greater than 0"]);
+    set("width=-1").fails(2, &["not be less than 0"]);
     folder
         .welt(&["apply", "sheet.obj", "-o", "out.obj", "--feature", "grove", "--mark", "ring:1,2"])
         .fails(2, &["no feature 'grove'", "groove, ridge"]);

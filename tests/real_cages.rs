@@ -4,9 +4,7 @@
 mod common;
 
 use rustc_hash::FxHashSet;
-use std::collections::BTreeMap;
-use welt::feature::{self, Feature, GROOVE, Length, Options, Report};
-use welt::grammar::RuleSet;
+use welt::feature::{self, Options, Report, Request};
 use welt::job::Job;
 use welt::mark::{Selection, Selector, Shape};
 use welt::mesh::{FaceId, Mesh};
@@ -46,19 +44,11 @@ fn rings(mesh: &Mesh) -> Vec<Ring> {
     rings
 }
 
-fn groove(
-    mesh: &mut Mesh,
-    ring: &Ring,
-    rules: &RuleSet,
-    depth: Length,
-    method: Method,
-    deviation: bool,
-) -> Report {
-    let lengths: BTreeMap<String, Length> =
-        [("width".to_owned(), Length::OfEdge(0.3)), ("depth".to_owned(), depth)].into();
-    let options = Options { lengths, method, samples: if deviation { 3 } else { 0 }, ..Options::default() };
-    let feature = Feature { rules, profile: Some(&GROOVE) };
-    feature::apply(mesh, &ring.selection, &feature, &options, &Job::new()).expect("a ring takes a groove")
+fn groove(mesh: &mut Mesh, ring: &Ring, depth: &str, method: Method, deviation: bool) -> Report {
+    let request =
+        Request::features(&["groove"], &["width=30%", &format!("depth={depth}")]).expect("a request");
+    let options = Options { method, samples: if deviation { 3 } else { 0 }, ..Options::default() };
+    feature::apply(mesh, &ring.selection, &request, &options, &Job::new()).expect("a ring takes a groove")
 }
 
 /// Chairs whose edges change their lengths slowly: the width holds to 3 % at all but 3 % of the places. On the others
@@ -77,7 +67,6 @@ fn quantile(sorted: &[f64], q: f64) -> f64 {
 #[test]
 fn every_ring_takes_a_groove() {
     let Some(data) = common::shared_data() else { return };
-    let rules = feature::linear_rules().expect("rules");
     let (mut count, mut narrow, mut shallow) = (0, Vec::new(), Vec::new());
     let (mut places, mut off) = (0, 0);
     for folder in ["upholstery", "product"] {
@@ -85,20 +74,20 @@ fn every_ring_takes_a_groove() {
             let (places_before, off_before) = (places, off);
             for ring in rings(&mesh) {
                 let mut result = mesh.clone();
-                let report = groove(&mut result, &ring, &rules, Length::OfEdge(0.1), Method::Solve, false);
+                let report = groove(&mut result, &ring, "10%", Method::Solve, false);
                 let marks = ring.selection.marks.len();
                 result.validate_control_mesh().unwrap_or_else(|e| panic!("{name}: {e}"));
                 assert!(report.leftovers.is_empty(), "{name}: {report}");
                 assert_eq!(result.vertex_bound(), mesh.vertex_bound() + 3 * marks, "{name}");
                 assert_eq!(non_quads(&result), non_quads(&mesh), "{name}");
                 let mut again = mesh.clone();
-                groove(&mut again, &ring, &rules, Length::OfEdge(0.1), Method::Solve, false);
+                groove(&mut again, &ring, "10%", Method::Solve, false);
                 assert_eq!(again.to_polygons(), result.to_polygons(), "{name}: two runs differ");
-                narrow.extend(report.width.iter().flat_map(|d| [d.worst_low, d.worst_high]));
-                shallow.extend(report.extent.iter().flat_map(|d| [d.worst_low, d.worst_high]));
+                narrow.extend(report.dimension("width").iter().flat_map(|d| [d.worst_low, d.worst_high]));
+                shallow.extend(report.dimension("depth").iter().flat_map(|d| [d.worst_low, d.worst_high]));
                 count += 1;
-                places += report.width.as_ref().map_or(0, |d| d.stations);
-                off += report.width.as_ref().map_or(0, |d| d.off.len());
+                places += report.dimension("width").map_or(0, |d| d.stations);
+                off += report.dimension("width").map_or(0, |d| d.off.len());
             }
             let (off_here, places_here) = (off - off_before, places - places_before);
             println!("{name}: width off by more than 3 % at {off_here} of {places_here} places");
@@ -129,14 +118,13 @@ fn every_ring_takes_a_groove() {
 #[test]
 fn depth_zero_leaves_the_surface_where_it_was() {
     let Some(data) = common::shared_data() else { return };
-    let rules = feature::linear_rules().expect("rules");
     let (mut rms, mut max) = (Vec::new(), Vec::new());
     for folder in ["upholstery", "product"] {
         for (name, mesh) in common::clean_cages(&data, folder) {
             for ring in rings(&mesh) {
                 let deviation = |method| {
                     let mut result = mesh.clone();
-                    let report = groove(&mut result, &ring, &rules, Length::Units(0.0), method, true);
+                    let report = groove(&mut result, &ring, "0", method, true);
                     report.fitted.unwrap_or_else(|| panic!("{name}: no deviation")).total
                 };
                 let none = deviation(Method::None);

@@ -1,9 +1,8 @@
 //! What a report warns of, on shapes where the limits are known.
 
 use glam::DVec3;
-use std::collections::BTreeMap;
 use std::f64::consts::TAU;
-use welt::feature::{self, Feature, GROOVE, Length, Options, Report, Warning};
+use welt::feature::{self, Options, Report, Request, Warning};
 use welt::job::Job;
 use welt::mark::{Selection, Selector};
 use welt::mesh::{Mesh, Polygons};
@@ -34,12 +33,10 @@ fn tube() -> Mesh {
 fn groove(mark: &str, depth: f64, samples: usize) -> Report {
     let mut mesh = tube();
     let selection = Selection::resolve(&mesh, &[Selector::parse(mark).expect("a selector")]).expect("marks");
-    let lengths: BTreeMap<String, Length> =
-        [("width".to_owned(), Length::OfEdge(0.3)), ("depth".to_owned(), Length::Units(depth))].into();
-    let rules = feature::linear_rules().expect("rules");
-    let options = Options { lengths, samples, ..Options::default() };
-    let feature = Feature { rules: &rules, profile: Some(&GROOVE) };
-    feature::apply(&mut mesh, &selection, &feature, &options, &Job::new()).expect("applied")
+    let request =
+        Request::features(&["groove"], &["width=30%", &format!("depth={depth}")]).expect("a request");
+    let options = Options { samples, ..Options::default() };
+    feature::apply(&mut mesh, &selection, &request, &options, &Job::new()).expect("applied")
 }
 
 /// The ring round the tube between rows 4 and 5.
@@ -82,6 +79,6 @@ fn a_groove_deeper_than_the_tube_is_wide_meets_the_other_wall() {
 #[test]
 fn what_was_not_measured_is_said() {
     let report = groove(LOCAL, 0.1, 0);
-    assert_eq!(report.width.as_ref().map(|d| d.stations), Some(0));
+    assert_eq!(report.dimension("width").map(|d| d.stations), Some(0));
     assert!(report.to_string().contains("width: asked 30%, not measured: no straight stretch"), "{report}");
 }

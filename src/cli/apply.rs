@@ -8,15 +8,16 @@ use super::output::{print, tell};
 use super::progress::watch;
 use std::io::Write;
 use std::process::ExitCode;
-use welt::feature::{Feature, Options, PROFILES, Profile, linear_rules};
-use welt::grammar::RuleSet;
+use std::sync::Arc;
+use welt::feature::{Options, ProfileError, Request, RequestError};
+use welt::grammar::{RuleSet, Trace, Tracer};
 use welt::io;
 use welt::mark::{Selection, Selector};
 use welt::optimise::Method;
 use welt::surface::SAMPLES;
 
 pub fn run(arguments: &Apply) -> Result<ExitCode, Failure> {
-    let profile = arguments.feature.as_deref().map(named).transpose()?;
+    let request = request(arguments)?;
     let options = options(arguments)?;
     let selectors: Vec<Selector> = arguments
         .marks
@@ -26,15 +27,16 @@ pub fn run(arguments: &Apply) -> Result<ExitCode, Failure> {
         .map_err(Failure::usage)?;
     check_outputs(arguments)?;
 
-    let rules = match &arguments.rules {
-        Some(path) => RuleSet::load(path)?,
-        None => linear_rules()?,
-    };
     let mut mesh = files::import(&arguments.input, &arguments.import)?;
     let before = arguments.figure.as_ref().map(|_| mesh.clone());
     let selection = Selection::resolve(&mesh, &selectors)?;
-    let feature = Feature { rules: &rules, profile };
-    let report = watch(|job| welt::feature::apply(&mut mesh, &selection, &feature, &options, job))?;
+    let result = watch(|job| welt::feature::apply(&mut mesh, &selection, &request, &options, job));
+    // Of an attempt that failed, the trace shows how it came to that.
+    if let (Some(path), Some(tracer)) = (&arguments.trace, &options.tracer) {
+        let lines = tracer.trace().to_lines()?;
+        io::save(path, |out| out.write_all(lines.as_bytes()))?;
+    }
+    let report = result?;
 
     files::export(&arguments.output, &mesh)?;
     if let Some(path) = &arguments.report {
@@ -71,18 +73,34 @@ fn check_outputs(arguments: &Apply) -> Result<(), Failure> {
         )));
     }
     files::check_mesh_output(&arguments.output)?;
-    [report, figure].into_iter().flatten().try_for_each(files::check_output)
+    let trace = arguments.trace.as_deref();
+    [report, figure, trace].into_iter().flatten().try_for_each(files::check_output)
 }
 
-fn named(name: &str) -> Result<&'static Profile, Failure> {
-    Profile::named(name).ok_or_else(|| {
-        let known: Vec<&str> = PROFILES.iter().map(|profile| profile.name).collect();
-        Failure::usage(format_args!("there is no feature '{name}'; there are {}", known.join(", ")))
+fn tracer(arguments: &Apply) -> Result<Option<Arc<Tracer>>, Failure> {
+    let Some(path) = &arguments.replay else {
+        return Ok(arguments.trace.as_ref().map(|_| Arc::new(Tracer::record())));
+    };
+    let text =
+        std::fs::read_to_string(path).map_err(|e| Failure::error(format_args!("{}: {e}", path.display())))?;
+    let trace = Trace::from_lines(&text)
+        .map_err(|(line, problem)| Failure::error(format_args!("{}:{line}: {problem}", path.display())))?;
+    Ok(Some(Arc::new(Tracer::replay(trace))))
+}
+
+fn request(arguments: &Apply) -> Result<Request, Failure> {
+    let request = match &arguments.rules {
+        Some(path) => Request::rules(RuleSet::load(path)?, &arguments.set),
+        None => Request::features(&arguments.features, &arguments.set),
+    };
+    request.map_err(|error| match error {
+        RequestError::Profile(ProfileError::File { .. }) | RequestError::Rules(_) => Failure::error(error),
+        error => Failure::usage(error),
     })
 }
 
 fn options(arguments: &Apply) -> Result<Options, Failure> {
-    let mut options = Options {
+    Ok(Options {
         method: match arguments.optimise {
             FitMethod::None => Method::None,
             FitMethod::Loop => Method::Loop,
@@ -90,10 +108,6 @@ fn options(arguments: &Apply) -> Result<Options, Failure> {
         },
         samples: if arguments.no_deviation { 0 } else { SAMPLES },
         threads: arguments.threads,
-        ..Options::default()
-    };
-    for setting in &arguments.set {
-        options.set(setting, arguments.rules.is_some()).map_err(Failure::usage)?;
-    }
-    Ok(options)
+        tracer: tracer(arguments)?,
+    })
 }

@@ -97,17 +97,17 @@ pub struct Apply {
     /// Where the new control mesh goes (.obj or .ply), or - for OBJ on standard output
     #[arg(short, long, value_name = "OUT")]
     pub output: PathBuf,
-    /// Feature to apply: groove, ridge
-    #[arg(long, value_name = "NAME", required_unless_present = "rules")]
-    pub feature: Option<String>,
+    /// Feature for marks that name no kind, or KIND=FEATURE: groove, ridge, piping, step, bead, dent, loop, or a profile file ending in .toml
+    #[arg(long = "feature", value_name = "[KIND=]FEATURE", required_unless_present = "rules")]
+    pub features: Vec<String>,
     /// Rule file to run on the marks instead of a feature
-    #[arg(long, value_name = "FILE", conflicts_with = "feature")]
+    #[arg(long, value_name = "FILE", conflicts_with = "features")]
     pub rules: Option<PathBuf>,
-    /// Edges to mark: edge:A,B[@t], ring:A,B, path:A,B:C,D, cut:V,V,..., select:FILE (0-based vertices). #kind at the end is for rule files; features take marks of every kind
+    /// Edges to mark: edge:A,B[@t], ring:A,B, path:A,B:C,D, cut:V,V,..., select:FILE (0-based vertices); #KIND at the end asks for the feature of that kind
     #[arg(long = "mark", value_name = "SELECTOR", required = true)]
     pub marks: Vec<String>,
-    /// Parameters: width=0.3 (model units) or width=30% (of the local edge)
-    #[arg(long = "set", value_name = "NAME=VALUE")]
+    /// Parameters: width=0.3 (model units) or width=30% (of the local edge); KIND.width=30% for one feature of several
+    #[arg(long = "set", value_name = "[KIND.]NAME=VALUE")]
     pub set: Vec<String>,
     /// How to fit the changed mesh to the surface as it was
     #[arg(long, value_enum, default_value = "solve")]

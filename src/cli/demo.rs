@@ -9,7 +9,7 @@ use glam::DVec3;
 use std::io::Write;
 use std::process::ExitCode;
 use std::time::Instant;
-use welt::feature::{self, Feature, Options, Profile};
+use welt::feature::{self, Options, Request};
 use welt::io::{self, Format, ImportOptions};
 use welt::job::Job;
 use welt::mark::{Selection, Selector};
@@ -20,7 +20,7 @@ struct Scene {
     name: &'static str,
     title: &'static str,
     model: &'static str,
-    profile: &'static Profile,
+    features: &'static [&'static str],
     marks: &'static [&'static str],
     set: &'static [&'static str],
     viewer: DVec3,
@@ -34,7 +34,7 @@ const SCENES: [Scene; 3] = [
         name: "ring",
         title: "A groove round a shell chair (one click: ring:3,331)",
         model: LEAF,
-        profile: &feature::GROOVE,
+        features: &["groove"],
         marks: &["ring:3,331"],
         set: &["width=1.6", "depth=0.6"],
         viewer: DVec3::new(-0.9, 0.6, 1.5),
@@ -44,7 +44,7 @@ const SCENES: [Scene; 3] = [
         name: "corner",
         title: "A seam with four corners (cut:442,1071,443,422,444,57)",
         model: LEAF,
-        profile: &feature::GROOVE,
+        features: &["groove"],
         marks: &["cut:442,1071,443,422,444,57"],
         set: &["width=1.2", "depth=0.5"],
         viewer: DVec3::new(-0.6, 0.5, 1.5),
@@ -54,7 +54,7 @@ const SCENES: [Scene; 3] = [
         name: "crossing",
         title: "Two raised seams that cross (ring:3,331 and ring:16,333)",
         model: LEAF,
-        profile: &feature::RIDGE,
+        features: &["ridge"],
         marks: &["ring:3,331", "ring:16,333"],
         set: &["width=1.6", "height=0.5"],
         viewer: DVec3::new(-0.9, 0.6, 1.5),
@@ -65,7 +65,6 @@ const SCENES: [Scene; 3] = [
 pub fn run(arguments: &Demo) -> Result<ExitCode, Failure> {
     let folder = &arguments.folder;
     std::fs::create_dir_all(folder).map_err(|e| Failure::error(format_args!("{}: {e}", folder.display())))?;
-    let rules = feature::linear_rules()?;
     for scene in &SCENES {
         let start = Instant::now();
         let before =
@@ -73,14 +72,11 @@ pub fn run(arguments: &Demo) -> Result<ExitCode, Failure> {
                 .mesh;
         let selectors: Vec<Selector> =
             scene.marks.iter().map(|text| Selector::parse(text)).collect::<Result<_, _>>()?;
-        let mut options = Options { samples: SAMPLES, ..Options::default() };
-        for setting in scene.set {
-            options.set(setting, false)?;
-        }
+        let options = Options { samples: SAMPLES, ..Options::default() };
+        let request = Request::features(scene.features, scene.set)?;
         let selection = Selection::resolve(&before, &selectors)?;
-        let feature = Feature { rules: &rules, profile: Some(scene.profile) };
         let mut after = before.clone();
-        let report = feature::apply(&mut after, &selection, &feature, &options, &Job::new())?;
+        let report = feature::apply(&mut after, &selection, &request, &options, &Job::new())?;
 
         let limit = limit_picture(&before, &after, &report)?;
         let view = View { viewer: scene.viewer, up: DVec3::Y, zoom: scene.zoom };

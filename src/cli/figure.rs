@@ -150,9 +150,10 @@ pub fn draw(title: &str, after: &Mesh, report: &Report, limit: &LimitPicture, vi
 }
 
 fn dimensions(report: &Report) -> String {
-    let parts: Vec<String> = [&report.width, &report.extent]
-        .into_iter()
-        .flatten()
+    let parts: Vec<String> = report
+        .features
+        .iter()
+        .flat_map(|feature| &feature.dimensions)
         .filter(|d| d.stations > 0)
         .map(|d| {
             format!("{} asked {}, reached {}", d.name, significant(d.asked_mean), significant(d.reached_mean))

@@ -8,7 +8,7 @@ use serde::Serialize;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
-use welt::feature::PROFILES;
+use welt::feature::Profile;
 use welt::gml::{Diagnostic, Severity};
 use welt::grammar::{Case, Input, Parameter, RuleSet};
 use welt::picture::rule_svg;
@@ -130,8 +130,10 @@ fn list(file: Option<&Path>, json: bool) -> Result<ExitCode, Failure> {
             };
             if json { print_json(&listing)? } else { print(|out| write_rules(out, &listing))? }
         }
-        None if json => print_json(&PROFILES)?,
-        None => print(write_features)?,
+        None => {
+            let shipped = Profile::shipped()?;
+            if json { print_json(&shipped)? } else { print(|out| write_features(out, &shipped))? }
+        }
     }
     Ok(ExitCode::SUCCESS)
 }
@@ -155,10 +157,10 @@ fn write_rules(out: &mut impl Write, listing: &Listing) -> io::Result<()> {
     Ok(())
 }
 
-fn write_features(out: &mut impl Write) -> io::Result<()> {
-    for profile in PROFILES {
+fn write_features(out: &mut impl Write, shipped: &[Profile]) -> io::Result<()> {
+    for profile in shipped {
         writeln!(out, "{}: {}", profile.name, profile.help)?;
-        for p in profile.parameters {
+        for p in &profile.parameters {
             writeln!(out, "    {} = {}: {}", p.name, p.default, p.help)?;
         }
     }

@@ -7,14 +7,14 @@ use crate::mesh::{Domain, FaceId, HalfEdgeId, Mesh, Node, Value, VertexId};
 use std::collections::BTreeMap;
 
 /// Turns what the rules left over into the attribute `unresolved`, and takes the working attributes away.
-pub(super) fn settle(mesh: &mut Mesh, has_profile: bool) -> Vec<Leftover> {
-    let waiting = if has_profile { "places" } else { "color" };
+pub(super) fn settle(mesh: &mut Mesh, has_features: bool) -> Vec<Leftover> {
+    let waiting = if has_features { "places" } else { "color" };
     let waiting = mesh.intern(waiting);
     let mut half_edges: Vec<HalfEdgeId> =
         mesh.nodes_with_attribute(Domain::HalfEdge, waiting).into_iter().map(HalfEdgeId).collect();
     half_edges.retain(|&h| mesh.has_half_edge(h) && !mesh.face(h).is_boundary());
     let unresolved = mesh.intern("unresolved");
-    let kind = mesh.intern(if has_profile { "kind" } else { "color" });
+    let kind = mesh.intern(if has_features { "kind" } else { "color" });
     let mut marks: BTreeMap<FaceId, usize> = BTreeMap::new();
     for &h in &half_edges {
         *marks.entry(mesh.face(h)).or_default() += 1;
@@ -23,8 +23,8 @@ pub(super) fn settle(mesh: &mut Mesh, has_profile: bool) -> Vec<Leftover> {
         mesh.set_attribute(Node::HalfEdge(h), unresolved, Some(kind));
     }
     for (domain, names) in [
-        (Domain::HalfEdge, &["cuts", "mark", "places", "kind", "color", "t"][..]),
-        (Domain::Vertex, &["mark", "line", "cross", "hold"][..]),
+        (Domain::HalfEdge, &["cuts", "lines", "mark", "places", "kind", "color", "t"][..]),
+        (Domain::Vertex, &["mark", "line", "kind", "cross", "crosskind", "hold"][..]),
     ] {
         for name in names {
             let name = mesh.intern(name);
@@ -67,13 +67,13 @@ pub(super) fn affected_faces(mesh: &Mesh, changed: &[FaceId]) -> Vec<FaceId> {
 }
 
 /// Edges between vertices of one line, other than the pieces of marked edges.
-pub(super) fn feature_edges(mesh: &Mesh, lines: &[LineVertex], count: usize) -> Vec<(u32, u32)> {
+pub(super) fn feature_edges(mesh: &Mesh, lines: &[LineVertex]) -> Vec<(u32, u32)> {
     let of = |v: VertexId| lines.binary_search_by_key(&v, |entry| entry.vertex).ok().map(|i| &lines[i]);
     let mut edges = Vec::new();
     for a in lines {
         for b in mesh.outgoing(a.vertex).filter_map(|h| of(mesh.target(h))) {
             let pieces_of_one_mark = a.mark.is_some() && a.mark == b.mark;
-            if a.vertex < b.vertex && a.shares_line(b, count) && !pieces_of_one_mark {
+            if a.vertex < b.vertex && a.shares_line(b) && !pieces_of_one_mark {
                 edges.push((a.vertex.0, b.vertex.0));
             }
         }

@@ -4,21 +4,24 @@
 //! normal. In straight bands this gives the closed form 3/2 of the depth, in crossings the centre at half height
 //! (docs/linear-features.md, sections 1 and 2).
 
-use super::profile::Profile;
+use super::request::Feature;
+use super::section::Section;
 use crate::mesh::{Domain, Mesh, Node, Value, VertexId};
 use crate::optimise::{LeastSquares, Row};
 use crate::subdivision::{limit_mask, limit_normal, limit_position};
 use glam::DVec3;
 use rustc_hash::FxHashMap;
 
-/// A vertex that belongs to a line of the profile.
+/// A vertex that belongs to a line of a profile.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct LineVertex {
     pub(super) vertex: VertexId,
+    /// Which feature.
+    pub(super) feature: usize,
     /// Which line, from 0.
     pub(super) line: usize,
-    /// Which line of the other feature, where two cross.
-    pub(super) cross: Option<usize>,
+    /// Feature and line of the other one, where two cross.
+    pub(super) cross: Option<(usize, usize)>,
     /// The mark on whose edge it was inserted; `None` inside a junction.
     pub(super) mark: Option<usize>,
     /// Control height as a fraction of that in a straight band, where a rule fixes it.
@@ -26,27 +29,23 @@ pub(super) struct LineVertex {
 }
 
 impl LineVertex {
-    /// Height of the limit surface here in units of the extent; the greater one where two features cross.
-    fn height(&self, profile: &Profile) -> Option<f64> {
-        [Some(self.line), self.cross]
-            .into_iter()
-            .flatten()
-            .filter_map(|line| profile.lines.get(line)?.height)
-            .max_by(|a, b| a.abs().total_cmp(&b.abs()))
+    fn lines(&self) -> impl Iterator<Item = (usize, usize)> {
+        [Some((self.feature, self.line)), self.cross].into_iter().flatten()
     }
 
-    /// True when both lie on one line of a feature with `count` lines. Marks may count their lines from either side.
-    pub(super) fn shares_line(&self, other: &Self, count: usize) -> bool {
-        let lines = |v: &Self| [Some(v.line), v.cross].into_iter().flatten();
-        lines(self).any(|line| lines(other).any(|other| line == other || line + other + 1 == count))
+    /// True when both lie on one line of a feature.
+    pub(super) fn shares_line(&self, other: &Self) -> bool {
+        self.lines().any(|line| other.lines().any(|other| line == other))
     }
 }
 
-/// The vertices that the rules assigned to lines of the profile, by id.
-pub(super) fn line_vertices(mesh: &Mesh) -> Vec<LineVertex> {
+/// The vertices that the rules assigned to lines of profiles, by id. `feature_of` knows the kinds.
+pub(super) fn line_vertices(mesh: &Mesh, feature_of: impl Fn(&str) -> Option<usize>) -> Vec<LineVertex> {
     let Some(line) = mesh.symbol("line") else { return Vec::new() };
-    let number =
-        |v: VertexId, name: &str| mesh.attribute_named(Node::Vertex(v), name).and_then(Value::as_number);
+    let value = |v: VertexId, name: &str| mesh.attribute_named(Node::Vertex(v), name);
+    let number = |v: VertexId, name: &str| value(v, name).and_then(Value::as_number);
+    let feature =
+        |v: VertexId, name: &str| value(v, name).and_then(Value::as_text).map_or(Some(0), &feature_of);
     mesh.nodes_with_attribute(Domain::Vertex, line)
         .into_iter()
         .map(VertexId)
@@ -55,8 +54,9 @@ pub(super) fn line_vertices(mesh: &Mesh) -> Vec<LineVertex> {
             let index = |name: &str| number(vertex, name).map(|line| (line - 1.0) as usize);
             Some(LineVertex {
                 vertex,
+                feature: feature(vertex, "kind")?,
                 line: index("line")?,
-                cross: index("cross"),
+                cross: index("cross").and_then(|line| Some((feature(vertex, "crosskind")?, line))),
                 mark: number(vertex, "mark").map(|mark| mark as usize),
                 hold: number(vertex, "hold"),
             })
@@ -74,46 +74,87 @@ pub(super) struct Green {
     pub(super) normal: DVec3,
     /// Asked height of the limit surface along the normal, model units.
     pub(super) target: f64,
-    /// Height asked for by the user, without corrections and sign.
+    /// Size of the height asked for by the user, without corrections.
     pub(super) asked: f64,
+    /// Height of the control vertex over the base, where a rule fixes it.
     hold: Option<f64>,
 }
 
-/// The vertices that are displaced, with their targets. `extents` is the depth or height per mark to aim at, `asked` that which the
-/// user asked for.
-pub(super) fn greens(
-    mesh: &Mesh,
-    lines: &[LineVertex],
-    profile: &Profile,
-    extents: &[f64],
-    asked: &[f64],
-) -> Vec<Green> {
-    let extent_of: FxHashMap<VertexId, [f64; 2]> = lines
-        .iter()
-        .filter_map(|v| Some((v.vertex, [*extents.get(v.mark?)?, *asked.get(v.mark?)?])))
+/// What the marks ask for: parameters of their features, in model units.
+pub(super) struct Asked<'a> {
+    pub(super) features: &'a [Feature],
+    /// The feature of each mark.
+    pub(super) feature_of: &'a [usize],
+    /// Per mark, values to aim at.
+    pub(super) aims: &'a [Vec<f64>],
+    /// Per mark, values that the user asked for.
+    pub(super) asked: &'a [Vec<f64>],
+    /// Vertices inside of closed loops, and their features.
+    pub(super) inside: &'a [(VertexId, usize)],
+}
+
+/// Values to aim at and asked for.
+type Values = [Vec<f64>; 2];
+
+fn mean(values: &[Values], count: usize) -> Values {
+    let n = values.len().max(1) as f64;
+    [0, 1].map(|k| (0..count).map(|p| values.iter().map(|v| v[k][p]).sum::<f64>() / n).collect())
+}
+
+/// The vertices that are displaced, with their targets.
+pub(super) fn greens(mesh: &Mesh, lines: &[LineVertex], asked: &Asked) -> Vec<Green> {
+    let of_mark = |mark: usize| -> Option<(usize, Values)> {
+        Some((*asked.feature_of.get(mark)?, [asked.aims.get(mark)?.clone(), asked.asked.get(mark)?.clone()]))
+    };
+    let marks: FxHashMap<VertexId, usize> = lines.iter().filter_map(|v| Some((v.vertex, v.mark?))).collect();
+    let count = |feature: usize| asked.features[feature].profile.parameters.len();
+    let overall: Vec<Values> = (0..asked.features.len())
+        .map(|feature| {
+            let all = (0..asked.aims.len()).filter_map(of_mark).filter(|(f, _)| *f == feature);
+            mean(&all.map(|(_, values)| values).collect::<Vec<_>>(), count(feature))
+        })
         .collect();
-    let mean = |all: &[f64]| all.iter().sum::<f64>() / all.len().max(1) as f64;
-    let means = [mean(extents), mean(asked)];
-    lines
+    // At a vertex: what its mark asks for; inside a junction, what the lines around it ask for.
+    let values = |v: VertexId, feature: usize| -> Values {
+        let of_vertex = |v: &VertexId| {
+            let (f, values) = of_mark(*marks.get(v)?)?;
+            (f == feature).then_some(values)
+        };
+        of_vertex(&v).unwrap_or_else(|| {
+            let around: Vec<Values> = mesh.outgoing(v).filter_map(|h| of_vertex(&mesh.target(h))).collect();
+            if around.is_empty() { overall[feature].clone() } else { mean(&around, count(feature)) }
+        })
+    };
+    let green = |vertex: VertexId, height: [f64; 2], hold: Option<f64>| {
+        let normal = limit_normal(mesh, vertex)?;
+        let base = limit_position(mesh, vertex);
+        Some(Green { vertex, base, normal, target: height[0], asked: height[1].abs(), hold })
+    };
+    let mut greens: Vec<Green> = lines
         .iter()
         .filter_map(|v| {
-            let height = v.height(profile)?;
-            let normal = limit_normal(mesh, v.vertex)?;
-            let [extent, asked] = extent_of.get(&v.vertex).copied().unwrap_or_else(|| {
-                // Inside a junction: what the lines around it have.
-                let around: Vec<[f64; 2]> =
-                    mesh.outgoing(v.vertex).filter_map(|h| extent_of.get(&mesh.target(h)).copied()).collect();
-                if around.is_empty() {
-                    return means;
-                }
-                let count = around.len() as f64;
-                [0, 1].map(|i| around.iter().map(|pair| pair[i]).sum::<f64>() / count)
+            // Where two features cross, the greater height wins.
+            let (feature, line, height, values) = v
+                .lines()
+                .filter_map(|(feature, line)| {
+                    let height = asked.features[feature].profile.lines.get(line)?.height?;
+                    let values = values(v.vertex, feature);
+                    Some((feature, line, [height.of(&values[0]), height.of(&values[1])], values))
+                })
+                .max_by(|a, b| a.2[0].abs().total_cmp(&b.2[0].abs()))?;
+            let hold = v.hold.map(|fraction| {
+                let section = Section::new(&asked.features[feature].profile, &values[0]);
+                fraction * section.control.get(line).copied().unwrap_or(0.0)
             });
-            let base = limit_position(mesh, v.vertex);
-            let (target, asked) = (height * extent, height.abs() * asked);
-            Some(Green { vertex: v.vertex, base, normal, target, asked, hold: v.hold })
+            green(v.vertex, height, hold)
         })
-        .collect()
+        .collect();
+    greens.extend(asked.inside.iter().filter(|(v, _)| mesh.has_vertex(*v)).filter_map(|&(v, feature)| {
+        let height = asked.features[feature].profile.inside?;
+        green(v, [0, 1].map(|k| height.of(&overall[feature][k])), None)
+    }));
+    greens.sort_by_key(|green| green.vertex);
+    greens
 }
 
 /// Displaces single vertices: moves each along the limit normal so that its limit point rises by `height` (model
@@ -143,13 +184,8 @@ pub(super) fn displace(mesh: &mut Mesh, greens: &[Green]) {
         .enumerate()
         .map(|(i, green)| (green.vertex, i as u32))
         .collect();
-    let held: FxHashMap<VertexId, DVec3> = greens
-        .iter()
-        .filter_map(|green| {
-            let height = green.hold? * green.target * Profile::straight_control_height();
-            Some((green.vertex, green.normal * height))
-        })
-        .collect();
+    let held: FxHashMap<VertexId, DVec3> =
+        greens.iter().filter_map(|green| Some((green.vertex, green.normal * green.hold?))).collect();
     let free: Vec<&Green> = greens.iter().filter(|green| green.hold.is_none()).collect();
     let mut rows = Vec::with_capacity(free.len());
     let mut targets = Vec::with_capacity(free.len());

@@ -5,6 +5,8 @@
 //! before and after displacement, at the same parameters.
 
 use super::displace::LineVertex;
+use super::profile::Profile;
+use super::section::flanks;
 use crate::mesh::{FaceId, HalfEdgeId, Mesh, VertexId};
 use crate::optimise::evaluate_b_spline;
 use glam::DVec3;
@@ -20,21 +22,10 @@ pub(super) struct Station {
     pub(super) neighbours: [usize; 2],
 }
 
-/// What was reached at a station, in model units.
-#[derive(Clone, Copy, PartialEq, Debug)]
-pub(super) struct Reached {
-    /// Full width at half depth, across the band.
-    pub(super) width: f64,
-    /// Greatest distance between displaced and base surface along the base normal.
-    pub(super) extent: f64,
-}
-
-/// Samples across the band for the greatest extent.
-const SAMPLES: usize = 64;
-
-/// The stations of the marks in `lines` (all vertices of the mesh that lie on lines, by id).
-pub(super) fn stations(mesh: &Mesh, lines: &[LineVertex], marks: usize, line_count: usize) -> Vec<Station> {
-    let mut on_mark: Vec<Vec<Option<VertexId>>> = vec![vec![None; line_count]; marks];
+/// The stations of the marks in `lines` (all vertices of the mesh that lie on lines, by id); `line_count` per mark.
+pub(super) fn stations(mesh: &Mesh, lines: &[LineVertex], line_counts: &[usize]) -> Vec<Station> {
+    let mut on_mark: Vec<Vec<Option<VertexId>>> =
+        line_counts.iter().map(|&count| vec![None; count]).collect();
     for v in lines {
         if let Some(slot) = v.mark.and_then(|m| on_mark.get_mut(m)?.get_mut(v.line)) {
             *slot = Some(v.vertex);
@@ -42,13 +33,18 @@ pub(super) fn stations(mesh: &Mesh, lines: &[LineVertex], marks: usize, line_cou
     }
     let mark_of =
         |v: VertexId| lines.binary_search_by_key(&v, |entry| entry.vertex).ok().and_then(|i| lines[i].mark);
-    (0..marks)
+    (0..line_counts.len())
         .filter_map(|mark| {
             let inner: Vec<VertexId> = on_mark[mark].iter().copied().collect::<Option<_>>()?;
-            station(mesh, mark, &inner, mark_of)
+            let station = station(mesh, mark, &inner, mark_of)?;
+            let alike = |&neighbour: &usize| line_counts.get(neighbour) == Some(&inner.len());
+            station.neighbours.iter().all(alike).then_some(station)
         })
         .collect()
 }
+
+/// Samples across the band for the greatest height.
+const SAMPLES: usize = 64;
 
 fn station(
     mesh: &Mesh,
@@ -114,13 +110,14 @@ impl Station {
             .unzip()
     }
 
-    /// Compares the limit surface of `displaced` with that of `base`, vertex positions of one connectivity.
-    /// `None` when the feature has no extent here.
+    /// Compares the limit surface of `displaced` with that of `base`, vertex positions of one connectivity: what was
+    /// reached of each parameter of the profile, in model units. `None` for parameters that cannot be measured here.
     pub(super) fn measure(
         &self,
+        profile: &Profile,
         base: impl Fn(VertexId) -> DVec3,
         displaced: impl Fn(VertexId) -> DVec3,
-    ) -> Option<Reached> {
+    ) -> Vec<Option<f64>> {
         let (base, along) = self.section(&base);
         let (moved, _) = self.section(&displaced);
         // The section covers parameters 1 to n - 2 of its n control points.
@@ -129,33 +126,25 @@ impl Station {
             let i = (x.floor() as usize).clamp(1, points.len() - 3);
             evaluate_b_spline(&[points[i - 1], points[i], points[i + 1], points[i + 2]], x - i as f64)
         };
-        let extent = |x: f64| {
+        let height = |x: f64| {
             let [p, across, _] = at(&base, x);
             let normal = across.cross(at(&along, x)[0]).normalize_or_zero();
-            (at(&moved, x)[0] - p).dot(normal).abs()
+            (at(&moved, x)[0] - p).dot(normal)
         };
-        let (mut peak, mut top) = (1.0, 0.0);
-        for i in 0..=SAMPLES {
-            let x = 1.0 + (last - 1.0) * i as f64 / SAMPLES as f64;
-            let e = extent(x);
-            if e > top {
-                (peak, top) = (x, e);
-            }
+        let mut reached = vec![None; profile.parameters.len()];
+        let heights: Vec<f64> =
+            (0..=SAMPLES).map(|i| height(1.0 + (last - 1.0) * i as f64 / SAMPLES as f64)).collect();
+        for extent in profile.extents() {
+            let top = heights.iter().map(|h| h * extent.times.signum()).fold(0.0, f64::max);
+            reached[extent.parameter] = (top > 0.0 && top.is_finite()).then_some(top / extent.times.abs());
         }
-        if top <= 0.0 || !top.is_finite() {
-            return None;
+        if let (Some(width), Some([low, high])) =
+            (profile.width(), flanks(height, [1.0, last], profile.inside.is_some()))
+        {
+            let chord = at(&base, high)[0] - at(&base, low)[0];
+            let direction = at(&along, (low + high) / 2.0)[0].normalize_or_zero();
+            reached[width] = Some((chord - direction * chord.dot(direction)).length());
         }
-        let half = |mut inside: f64, mut outside: f64| {
-            for _ in 0..60 {
-                let middle = (inside + outside) / 2.0;
-                if extent(middle) > top / 2.0 { inside = middle } else { outside = middle }
-            }
-            inside
-        };
-        let (low, high) = (half(peak, 1.0), half(peak, last));
-        let chord = at(&base, high)[0] - at(&base, low)[0];
-        let direction = at(&along, peak)[0].normalize_or_zero();
-        let width = (chord - direction * chord.dot(direction)).length();
-        Some(Reached { width, extent: top })
+        reached
     }
 }

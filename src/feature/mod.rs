@@ -1,28 +1,35 @@
 //! What users call: features on control meshes.
 //!
-//! A linear feature ([`apply`]) is one pipeline: place the lines of the profile on the marked edges, rewrite by
-//! rules, fit to the frozen surface, displace, measure; once more with corrected width and depth; report.
+//! A [`Request`] names features and what they are set to. [`apply`] is one pipeline: place the lines of the profiles on
+//! the marked edges, rewrite by rules, fit to the frozen surface, displace, measure; again with corrected width and
+//! depth; report.
 
 mod aftermath;
 mod clock;
+mod correct;
 mod deviation;
 mod displace;
+mod enclosed;
 mod length;
 mod linear;
 mod measure;
 mod place;
+mod prepare;
 mod profile;
+mod profile_file;
 mod report;
 mod request;
+mod section;
 mod settings;
+mod summary;
 
 pub use displace::raise;
 pub use length::{Length, significant};
 pub use linear::apply;
 pub use place::WidthError;
-pub use profile::{ALL as PROFILES, GROOVE, Line, Parameter, Profile, RIDGE};
-pub use report::{Counts, Difference, Dimension, Leftover, Report, Warning};
-pub use request::{Feature, FeatureError, Options};
+pub use profile::{Height, Line, Parameter, Profile, ProfileError, Unit};
+pub use report::{Counts, Difference, Dimension, FeatureReport, Leftover, Report, Warning};
+pub use request::{Feature, FeatureError, Options, Request, RequestError};
 pub use settings::SettingError;
 
 use crate::grammar::{RuleSet, RulesError};

@@ -1,7 +1,7 @@
 //! Where the lines of a profile cross each marked edge.
 
 use super::length::significant;
-use super::profile::{Profile, full_width, half_width};
+use super::section::Section;
 use crate::mark::Mark;
 use crate::mesh::{HalfEdgeId, Mesh};
 use glam::DVec3;
@@ -71,26 +71,37 @@ pub(super) fn crossing_sine(mesh: &Mesh, mark: &Mark) -> f64 {
     edge.normalize_or_zero().cross(direction).length().clamp(LEAST_SINE, 1.0)
 }
 
-/// Places along the marked edge, increasing in (0, 1), for a limit surface `width` wide at half depth across the
-/// feature.
+/// Places along the marked edge, increasing in (0, 1), for a limit surface `width` wide across the feature; without a
+/// width the lines are spread over the edge, a single one lies at the mark.
 ///
 /// # Errors
 /// [`WidthError`] when the lines would come closer than 1 % of the edge to each other or to the edge's ends.
-pub(super) fn cuts(mesh: &Mesh, mark: &Mark, profile: &Profile, width: f64) -> Result<Vec<f64>, WidthError> {
+pub(super) fn cuts(
+    mesh: &Mesh,
+    mark: &Mark,
+    section: &Section,
+    width: Option<f64>,
+) -> Result<Vec<f64>, WidthError> {
     let h = mark.half_edge;
     let length = mesh.edge_length(h);
+    let Some(width) = width else {
+        return Ok(match section.lines.as_slice() {
+            [_] => vec![mark.t],
+            lines => lines.iter().map(|line| (1.0 + line.across) / 2.0).collect(),
+        });
+    };
     let sine = crossing_sine(mesh, mark);
-    let lowest = CLEARANCE * length;
+    let lowest = CLEARANCE * length / section.least_gap();
     let highest = (mark.t.min(1.0 - mark.t) - CLEARANCE) * length;
-    let half = half_width(width / sine, length);
+    let half = section.half_width(width / sine, length, mark.t);
     if !(length > 0.0 && half >= lowest && half <= highest) {
         return Err(WidthError {
             edge: (mesh.source(h).0, mesh.target(h).0),
             length,
             asked: width,
-            low: sine * full_width(lowest, length),
-            high: sine * full_width(highest.max(0.0), length),
+            low: sine * section.full_width(lowest, length, mark.t),
+            high: sine * section.full_width(highest.max(0.0), length, mark.t),
         });
     }
-    Ok(profile.lines.iter().map(|line| mark.t + line.across * half / length).collect())
+    Ok(section.lines.iter().map(|line| mark.t + line.across * half / length).collect())
 }

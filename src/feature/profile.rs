@@ -1,17 +1,42 @@
-//! Profiles: the cross-section of a linear feature as data.
+//! Profiles: the cross-section of a linear feature as data, from `profiles/*.toml` or a file of the user.
 
 use super::length::Length;
 use serde::Serialize;
 
+/// What a parameter counts in.
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Serialize, serde::Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Unit {
+    /// Model units, or a share of the crossed edge.
+    Length,
+    /// A whole number.
+    Count,
+}
+
 /// A parameter that a feature declares, for hosts that build dialogs.
-#[derive(Clone, Copy, PartialEq, Debug, Serialize)]
+#[derive(Clone, PartialEq, Debug, Serialize)]
 pub struct Parameter {
-    /// Name, as in `--set width=0.1`.
-    pub name: &'static str,
+    /// Name, as in `width=0.1`.
+    pub name: String,
+    /// What it counts in.
+    pub unit: Unit,
     /// Value unless set.
     pub default: Length,
+    /// Least value, in model units or as a fraction of the edge.
+    pub low: f64,
+    /// Greatest value; `None` where only the mesh sets a bound.
+    pub high: Option<f64>,
     /// One line of help.
-    pub help: &'static str,
+    pub help: String,
+}
+
+/// A height over the base surface: a multiple of a parameter.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub struct Height {
+    /// Index of the parameter.
+    pub parameter: usize,
+    /// Its factor; negative is inwards.
+    pub times: f64,
 }
 
 /// One line of control vertices along a feature.
@@ -19,133 +44,133 @@ pub struct Parameter {
 pub struct Line {
     /// Place across the feature, in half widths of the control band: -1 and 1 are the rims.
     pub across: f64,
-    /// Height of the limit surface over the base at this line, in units of the feature's depth or height; `None`
-    /// leaves the control vertices of the line in the base surface.
-    pub height: Option<f64>,
+    /// Height of the limit surface over the base at this line; `None` leaves the control vertices of the line in the
+    /// base surface.
+    pub height: Option<Height>,
 }
 
 /// The cross-section of a linear feature.
-#[derive(Clone, Copy, PartialEq, Debug, Serialize)]
+#[derive(Clone, PartialEq, Debug, Serialize)]
 pub struct Profile {
     /// Name of the feature.
-    pub name: &'static str,
+    pub name: String,
     /// One line of help.
-    pub help: &'static str,
+    pub help: String,
     /// What can be set.
-    pub parameters: &'static [Parameter],
-    /// Name of the parameter that `Line::height` is a multiple of.
+    pub parameters: Vec<Parameter>,
+    /// The lines, from the side of the mark's first vertex to the other. Empty where they are spread.
     #[serde(skip)]
-    pub extent: &'static str,
-    /// The lines, from one rim to the other, the same from either side: marks may run in either direction along a
-    /// feature.
+    pub lines: Vec<Line>,
+    /// Index of the parameter that counts lines spread evenly over the edge.
     #[serde(skip)]
-    pub lines: &'static [Line],
+    pub spread: Option<usize>,
+    /// Height of everything on the side of the first line; marks must form closed loops then.
+    #[serde(skip)]
+    pub inside: Option<Height>,
 }
 
-const RIM_LEFT: Line = Line { across: -1.0, height: None };
-const RIM_RIGHT: Line = Line { across: 1.0, height: None };
+/// The files that ship.
+const SHIPPED: [(&str, &str); 7] = [
+    ("groove", include_str!("../../profiles/groove.toml")),
+    ("ridge", include_str!("../../profiles/ridge.toml")),
+    ("piping", include_str!("../../profiles/piping.toml")),
+    ("step", include_str!("../../profiles/step.toml")),
+    ("bead", include_str!("../../profiles/bead.toml")),
+    ("dent", include_str!("../../profiles/dent.toml")),
+    ("loop", include_str!("../../profiles/loop.toml")),
+];
 
-const WIDTH: Parameter = Parameter {
-    name: "width",
-    default: Length::OfEdge(0.3),
-    help: "full width of the limit surface at half depth, across the feature",
-};
-
-/// A groove of three lines: rim, valley, rim (paper, Figure 4).
-pub const GROOVE: Profile = Profile {
-    name: "groove",
-    help: "a seam pressed into the surface",
-    parameters: &[
-        WIDTH,
-        Parameter {
-            name: "depth",
-            default: Length::OfEdge(0.1),
-            help: "depth of the limit surface below the base, against the normal",
-        },
-    ],
-    extent: "depth",
-    lines: &[RIM_LEFT, Line { across: 0.0, height: Some(-1.0) }, RIM_RIGHT],
-};
-
-/// A ridge: a groove turned outwards.
-pub const RIDGE: Profile = Profile {
-    name: "ridge",
-    help: "a seam raised from the surface",
-    parameters: &[
-        WIDTH,
-        Parameter {
-            name: "height",
-            default: Length::OfEdge(0.1),
-            help: "height of the limit surface above the base, along the normal",
-        },
-    ],
-    extent: "height",
-    lines: &[RIM_LEFT, Line { across: 0.0, height: Some(1.0) }, RIM_RIGHT],
-};
-
-/// The features that ship.
-pub const ALL: [&Profile; 2] = [&GROOVE, &RIDGE];
-
-/// Limit depth over control depth of the middle of three lines: a cubic B-spline's centre weight.
-/// (docs/linear-features.md, section 1: D = 2h/3.)
-const CENTRE_WEIGHT: f64 = 2.0 / 3.0;
-/// Full width at half depth of a middle line between two rims at distance w with gaps g beyond the rims is
-/// `RIM w + GAP g`, for a uniform cubic B-spline cross-section (docs/linear-features.md, section 1).
-pub(super) const RIM: f64 = 1.3191;
-/// See [`RIM`].
-pub(super) const GAP: f64 = 0.1257;
+/// A profile that cannot be had.
+#[derive(Clone, PartialEq, Eq, Debug, thiserror::Error)]
+pub enum ProfileError {
+    /// No such feature.
+    #[error("there is no feature '{name}'; there are {}, and profile files ending in .toml", known.join(", "))]
+    Unknown {
+        /// The name asked for.
+        name: String,
+        /// The features that ship.
+        known: Vec<String>,
+    },
+    /// A profile file that cannot be read, or says what makes no sense. The message names file and line.
+    #[error("{message}")]
+    File {
+        /// What is wrong and what would be right.
+        message: String,
+    },
+}
 
 impl Profile {
-    /// The profile called `name`.
-    pub fn named(name: &str) -> Option<&'static Self> {
-        ALL.into_iter().find(|profile| profile.name == name)
+    /// Names of the features that ship, in the order of a menu.
+    pub fn names() -> impl Iterator<Item = &'static str> {
+        SHIPPED.iter().map(|(name, _)| *name)
     }
 
-    /// Control height of a line in a straight band whose limit has height 1.
-    pub(super) fn straight_control_height() -> f64 {
-        1.0 / CENTRE_WEIGHT
-    }
-}
-
-/// Half width of the control band along an edge of length `edge` that makes the limit `width` wide at half depth;
-/// both lengths along the edge. The gaps beyond the rims add up to `edge - 2 w`.
-pub(super) fn half_width(width: f64, edge: f64) -> f64 {
-    (width - GAP / 2.0 * edge) / (RIM - GAP)
-}
-
-/// The inverse of [`half_width`].
-pub(super) fn full_width(half_width: f64, edge: f64) -> f64 {
-    (RIM - GAP) * half_width + GAP / 2.0 * edge
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// The two constants from the cross-section itself: cubic B-spline in place and height.
-    #[test]
-    fn the_width_formula_is_that_of_a_cubic_b_spline() {
-        // Height of the basis function at distance u <= 1 from its centre: 2/3 - u^2 + u^3/2; half of 2/3 at u.
-        let height = |u: f64| 2.0 / 3.0 - u * u + u * u * u / 2.0;
-        let (mut low, mut high) = (0.0, 1.0);
-        for _ in 0..60 {
-            let middle = (low + high) / 2.0;
-            if height(middle) > 1.0 / 3.0 { low = middle } else { high = middle }
+    /// A feature that ships, or the profile in a file when the name ends in `.toml`.
+    ///
+    /// # Errors
+    /// An unknown name, a file that cannot be used.
+    pub fn named(name: &str) -> Result<Self, ProfileError> {
+        if name.ends_with(".toml") {
+            let text = std::fs::read_to_string(name)
+                .map_err(|e| ProfileError::File { message: format!("{name}: {e}") })?;
+            return Self::parse(name, &text);
         }
-        let u: f64 = low;
-        // Place at u between the middle (0), the rim (w), the next vertex (w + g) and the other rim (-w).
-        let b = |x: f64| {
-            let x = x.abs();
-            if x <= 1.0 { 2.0 / 3.0 - x * x + x * x * x / 2.0 } else { (2.0 - x).max(0.0).powi(3) / 6.0 }
-        };
-        let per_w = b(u - 1.0) + b(u - 2.0) - b(u + 1.0);
-        let per_g = b(u - 2.0);
-        assert!((2.0 * per_w - RIM).abs() < 1e-4, "{}", 2.0 * per_w);
-        assert!((2.0 * per_g - GAP).abs() < 1e-4, "{}", 2.0 * per_g);
+        match SHIPPED.iter().find(|entry| entry.0 == name) {
+            Some((name, text)) => Self::parse(&format!("{name}.toml"), text),
+            None => Err(ProfileError::Unknown {
+                name: name.to_owned(),
+                known: Self::names().map(str::to_owned).collect(),
+            }),
+        }
     }
 
-    #[test]
-    fn half_width_and_full_width_are_inverse() {
-        assert!((full_width(half_width(0.3, 1.0), 1.0) - 0.3).abs() < 1e-15);
+    /// All features that ship.
+    ///
+    /// # Errors
+    /// None in a library that was tested.
+    pub fn shipped() -> Result<Vec<Self>, ProfileError> {
+        Self::names().map(Self::named).collect()
+    }
+
+    /// Index of the parameter called `name`.
+    pub fn parameter(&self, name: &str) -> Option<usize> {
+        self.parameters.iter().position(|p| p.name == name)
+    }
+
+    /// Index of the parameter that is the width across the feature.
+    pub(super) fn width(&self) -> Option<usize> {
+        self.parameter("width")
+    }
+
+    /// Indices of the parameters that heights are multiples of, each with its greatest factor.
+    pub(super) fn extents(&self) -> impl Iterator<Item = Height> + '_ {
+        (0..self.parameters.len()).filter_map(|p| {
+            self.lines
+                .iter()
+                .filter_map(|line| line.height)
+                .chain(self.inside)
+                .filter(|height| height.parameter == p)
+                .max_by(|a, b| a.times.abs().total_cmp(&b.times.abs()))
+        })
+    }
+
+    /// The lines for these values of the parameters.
+    pub(super) fn lines_for(&self, values: &[f64]) -> Vec<Line> {
+        match self.spread {
+            None => self.lines.clone(),
+            Some(parameter) => {
+                let count = values.get(parameter).map_or(1, |x| x.round().max(1.0) as usize);
+                // -1 and 1 are the edge's ends here.
+                let place = |i: usize| 2.0 * (i + 1) as f64 / (count + 1) as f64 - 1.0;
+                (0..count).map(|i| Line { across: place(i), height: None }).collect()
+            }
+        }
+    }
+}
+
+impl Height {
+    /// The height for these values of the parameters.
+    pub(super) fn of(self, values: &[f64]) -> f64 {
+        self.times * values.get(self.parameter).copied().unwrap_or(0.0)
     }
 }

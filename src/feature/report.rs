@@ -24,7 +24,7 @@ pub struct Counts {
 #[derive(Clone, PartialEq, Debug, Serialize)]
 pub struct Dimension {
     /// Name of the parameter.
-    pub name: &'static str,
+    pub name: String,
     /// What was asked for, as given.
     pub asked: Length,
     /// Marked edges at which the band runs straight, where it was measured.
@@ -40,6 +40,19 @@ pub struct Dimension {
     pub worst_low: f64,
     /// Greatest reached as a fraction of what was asked for.
     pub worst_high: f64,
+}
+
+/// What one of the features reached.
+#[derive(Clone, PartialEq, Debug, Serialize)]
+pub struct FeatureReport {
+    /// The kind of its marks.
+    pub kind: String,
+    /// Its profile.
+    pub profile: String,
+    /// Its marked edges.
+    pub marks: usize,
+    /// Its dimensions, asked and reached.
+    pub dimensions: Vec<Dimension>,
 }
 
 /// A face that no rule could handle.
@@ -104,7 +117,7 @@ pub struct Difference {
 /// The report of a feature. Ids are those of the result.
 #[derive(Clone, PartialEq, Debug, Serialize)]
 pub struct Report {
-    /// Name of the feature or of the rule file.
+    /// Names of the features, or of the rule file.
     pub feature: String,
     /// Elements before.
     pub before: Counts,
@@ -124,10 +137,8 @@ pub struct Report {
     pub leftovers: Vec<Leftover>,
     /// What the optimiser did.
     pub fit: FitReport,
-    /// Width asked and reached.
-    pub width: Option<Dimension>,
-    /// Depth or height asked and reached.
-    pub extent: Option<Dimension>,
+    /// The features that were marked.
+    pub features: Vec<FeatureReport>,
     /// Corrections of width and depth after a first measurement.
     pub corrections: u32,
     /// Deviation after the fit, before displacement; `None` unless asked for.
@@ -153,6 +164,11 @@ pub struct Report {
 }
 
 impl Report {
+    /// The dimension called `name` of the first feature that has it.
+    pub fn dimension(&self, name: &str) -> Option<&Dimension> {
+        self.features.iter().flat_map(|feature| &feature.dimensions).find(|d| d.name == name)
+    }
+
     /// Follows a compaction of the mesh.
     pub(super) fn renumber(&mut self, map: &Renumbering) {
         let vertex = |v: u32| map.vertex(VertexId(v)).map(|v| v.0);
@@ -194,14 +210,16 @@ impl fmt::Display for Report {
         let rules: Vec<String> =
             self.rules.iter().filter(|r| r.1 > 0).map(|(name, count)| format!("{name} {count}")).collect();
         writeln!(f, "rules: {}", if rules.is_empty() { "none applied".into() } else { rules.join(", ") })?;
-        for d in [&self.width, &self.extent].into_iter().flatten() {
+        let several = self.features.len() > 1;
+        for (feature, d) in self.features.iter().flat_map(|f| f.dimensions.iter().map(move |d| (f, d))) {
+            let of = if several { format!("{}.", feature.kind) } else { String::new() };
             if d.stations == 0 {
-                writeln!(f, "{}: asked {}, not measured: no straight stretch", d.name, d.asked)?;
+                writeln!(f, "{of}{}: asked {}, not measured: no straight stretch", d.name, d.asked)?;
                 continue;
             }
             writeln!(
                 f,
-                "{}: asked {}, reached {} of {} in the mean ({:+.2} % to {:+.2} %; {} of {} places off by more than 3 %)",
+                "{of}{}: asked {}, reached {} of {} in the mean ({:+.2} % to {:+.2} %; {} of {} places off by more than 3 %)",
                 d.name,
                 d.asked,
                 significant(d.reached_mean),

@@ -1,27 +1,213 @@
 //! What a caller asks for, and why it may be refused.
 
-use super::{Length, Profile, WidthError};
-use crate::grammar::{self, RuleSet};
+use super::settings::Setting;
+use super::{Length, Profile, ProfileError, SettingError, WidthError};
+use crate::grammar::{self, RuleSet, Tracer};
 use crate::job::Cancelled;
+use crate::mark::DEFAULT_KIND;
 use crate::optimise::Method;
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
-/// What to apply.
-#[derive(Clone, Copy, Debug)]
-pub struct Feature<'a> {
+/// A feature and what it is set to.
+#[derive(Clone, Debug)]
+pub struct Feature {
+    /// The kind of the marks that ask for it.
+    pub kind: String,
+    /// The cross-section.
+    pub profile: Profile,
+    /// Parameters of the profile that differ from their defaults.
+    pub lengths: BTreeMap<String, Length>,
+}
+
+impl Feature {
+    /// The value of parameter number `index`, as set or by default.
+    pub(super) fn length(&self, index: usize) -> Length {
+        self.profile.parameters.get(index).map_or(Length::Units(0.0), |parameter| {
+            self.lengths.get(&parameter.name).copied().unwrap_or(parameter.default)
+        })
+    }
+}
+
+/// What to apply: rules, and the features whose marks they are to handle.
+///
+/// A mark asks for the feature whose kind it names; one that names no kind asks for the first. Without features the
+/// rules run on the marks as they are, and nothing is displaced.
+#[derive(Clone, Debug)]
+pub struct Request {
     /// The rules that rewrite the mesh.
-    pub rules: &'a RuleSet,
-    /// The cross-section; without one the rules run on the marks as they are and nothing is displaced.
-    pub profile: Option<&'a Profile>,
+    pub rules: RuleSet,
+    /// The features.
+    pub features: Vec<Feature>,
+    /// Parameters of the rules that differ from their defaults.
+    pub numbers: BTreeMap<String, f64>,
+}
+
+/// A request that makes no sense.
+#[derive(Clone, Debug, thiserror::Error)]
+pub enum RequestError {
+    /// A feature that cannot be had.
+    #[error(transparent)]
+    Profile(#[from] ProfileError),
+    /// A setting that cannot be read, or names a parameter that there is not, or is out of range.
+    #[error(transparent)]
+    Setting(#[from] SettingError),
+    /// Two features of one kind.
+    #[error("the kind '{kind}' is given twice; name one of them otherwise, such as wide=groove")]
+    KindTwice {
+        /// The kind.
+        kind: String,
+    },
+    /// The rules that ship cannot be read.
+    #[error(transparent)]
+    Rules(#[from] grammar::RulesError),
+}
+
+impl Request {
+    /// Features by name, with the rules that ship.
+    ///
+    /// Each name is `FEATURE` or `KIND=FEATURE`; a feature is one of [`Profile::names`] or a profile file ending in
+    /// `.toml`. Each setting is `NAME=VALUE`, for every feature that has the parameter and else for the rules, or
+    /// `KIND.NAME=VALUE` for one feature.
+    ///
+    /// # Errors
+    /// See [`RequestError`].
+    pub fn features<S: AsRef<str>, T: AsRef<str>>(names: &[S], settings: &[T]) -> Result<Self, RequestError> {
+        let mut request =
+            Self { rules: super::linear_rules()?, features: Vec::new(), numbers: BTreeMap::new() };
+        for name in names {
+            let (kind, feature) = match name.as_ref().split_once('=') {
+                Some((kind, feature)) => (Some(kind), feature),
+                None => (None, name.as_ref()),
+            };
+            request.add(kind, feature)?;
+        }
+        for setting in settings {
+            request.set(setting.as_ref())?;
+        }
+        Ok(request)
+    }
+
+    /// Rules of the caller, without features.
+    ///
+    /// # Errors
+    /// A setting that is no number or names no parameter of the rules.
+    pub fn rules<T: AsRef<str>>(rules: RuleSet, settings: &[T]) -> Result<Self, RequestError> {
+        let mut request = Self { rules, features: Vec::new(), numbers: BTreeMap::new() };
+        for setting in settings {
+            request.set(setting.as_ref())?;
+        }
+        Ok(request)
+    }
+
+    fn add(&mut self, kind: Option<&str>, name: &str) -> Result<(), RequestError> {
+        let profile = Profile::named(name)?;
+        let kind = kind.map_or_else(|| profile.name.clone(), str::to_owned);
+        if self.features.iter().any(|feature| feature.kind == kind) {
+            return Err(RequestError::KindTwice { kind });
+        }
+        self.features.push(Feature { kind, profile, lengths: BTreeMap::new() });
+        Ok(())
+    }
+
+    /// Takes over a setting.
+    ///
+    /// # Errors
+    /// Text that is no setting, a parameter that there is not, a value out of its range.
+    pub fn set(&mut self, text: &str) -> Result<(), SettingError> {
+        let setting: Setting = text.parse()?;
+        let error = |problem: String| SettingError { text: text.to_owned(), problem };
+        let chosen: Vec<usize> = match &setting.kind {
+            Some(kind) => {
+                let index = feature_of(&mut self.features, kind).ok_or_else(|| {
+                    error(format!(
+                        "there is no feature of kind '{kind}'; there are {}",
+                        self.kinds().join(", ")
+                    ))
+                })?;
+                if self.features[index].profile.parameter(&setting.name).is_none() {
+                    return Err(error(unknown(
+                        &self.features[index].profile.name,
+                        &setting.name,
+                        self.known(Some(index)),
+                    )));
+                }
+                vec![index]
+            }
+            None => (0..self.features.len())
+                .filter(|&i| self.features[i].profile.parameter(&setting.name).is_some())
+                .collect(),
+        };
+        for &i in &chosen {
+            let feature = &mut self.features[i];
+            let parameter = feature.profile.parameters.iter().find(|p| p.name == setting.name);
+            if let Some(problem) = parameter.and_then(|parameter| parameter.problem(setting.value)) {
+                return Err(error(problem));
+            }
+            feature.lengths.insert(setting.name.clone(), setting.value);
+        }
+        if chosen.is_empty() {
+            let Some(parameter) = self.rules.parameters().iter().find(|p| p.name == setting.name) else {
+                let name = self.features.first().map_or(self.rules.name(), |feature| &feature.profile.name);
+                return Err(error(unknown(name, &setting.name, self.known(None))));
+            };
+            let Length::Units(x) = setting.value else {
+                return Err(error("parameters of rules are plain numbers".into()));
+            };
+            if !(parameter.low..=parameter.high).contains(&x) {
+                return Err(error(format!("it lies between {} and {}", parameter.low, parameter.high)));
+            }
+            self.numbers.insert(setting.name, x);
+        }
+        Ok(())
+    }
+
+    fn kinds(&self) -> Vec<String> {
+        self.features.iter().map(|feature| feature.kind.clone()).collect()
+    }
+
+    /// Names of all parameters, or of those of one feature.
+    fn known(&self, feature: Option<usize>) -> Vec<String> {
+        let mut names: Vec<String> = Vec::new();
+        let chosen = self.features.iter().enumerate().filter(|(i, _)| feature.is_none_or(|f| f == *i));
+        for parameter in chosen.flat_map(|(_, feature)| &feature.profile.parameters) {
+            if !names.contains(&parameter.name) {
+                names.push(parameter.name.clone());
+            }
+        }
+        if feature.is_none() {
+            names.extend(self.rules.parameters().iter().map(|p| p.name.clone()));
+        }
+        names
+    }
+
+    /// What the request is called in reports: its features, or the rules.
+    pub fn title(&self) -> String {
+        if self.features.is_empty() { self.rules.name().to_owned() } else { self.kinds().join(" + ") }
+    }
+}
+
+/// The index of the feature that marks of this kind ask for; features that ship need not be named before.
+pub(super) fn feature_of(features: &mut Vec<Feature>, kind: &str) -> Option<usize> {
+    if let Some(index) = features.iter().position(|feature| feature.kind == kind) {
+        return Some(index);
+    }
+    if kind == DEFAULT_KIND {
+        return (!features.is_empty()).then_some(0);
+    }
+    let profile = Profile::names().find(|name| *name == kind).and_then(|name| Profile::named(name).ok())?;
+    features.push(Feature { kind: kind.to_owned(), profile, lengths: BTreeMap::new() });
+    Some(features.len() - 1)
+}
+
+fn unknown(feature: &str, name: &str, known: Vec<String>) -> String {
+    let known = if known.is_empty() { "no parameters".to_owned() } else { known.join(", ") };
+    format!("{feature} has no parameter '{name}'; it has {known}")
 }
 
 /// How to apply it.
 #[derive(Clone, Debug)]
 pub struct Options {
-    /// Parameters of the profile that differ from their defaults (`width`, `depth`, `height`).
-    pub lengths: BTreeMap<String, Length>,
-    /// Parameters of the rule set that differ from their defaults.
-    pub numbers: BTreeMap<String, f64>,
     /// How to fit the changed mesh to the surface as it was.
     pub method: Method,
     /// Samples per side of a face for measuring deviations, 8 as a rule; 0 measures none. Measuring also looks for
@@ -29,17 +215,13 @@ pub struct Options {
     pub samples: usize,
     /// Threads for measuring deviations, 0 for all; the result does not depend on it.
     pub threads: usize,
+    /// Records where rules are applied, or says where to apply them.
+    pub tracer: Option<Arc<Tracer>>,
 }
 
 impl Default for Options {
     fn default() -> Self {
-        Self {
-            lengths: BTreeMap::new(),
-            numbers: BTreeMap::new(),
-            method: Method::Solve,
-            samples: 0,
-            threads: 1,
-        }
+        Self { method: Method::Solve, samples: 0, threads: 1, tracer: None }
     }
 }
 
@@ -55,25 +237,23 @@ pub enum FeatureError {
         /// The mark, counted from 0 in the order of the selection.
         mark: usize,
     },
-    /// A parameter that the feature does not have.
-    #[error("{feature} has no parameter '{name}'; it has {}", known.join(", "))]
-    UnknownParameter {
-        /// The feature or rule set.
-        feature: String,
-        /// The name given.
-        name: String,
-        /// The names there are.
+    /// A mark whose kind is no feature.
+    #[error("edge {},{} is marked #{kind}, and no feature has that name; there are {}", edge.0, edge.1, known.join(", "))]
+    UnknownKind {
+        /// The edge.
+        edge: (u32, u32),
+        /// The kind.
+        kind: String,
+        /// The kinds there are.
         known: Vec<String>,
     },
-    /// A parameter out of its range.
-    #[error("{name} is {value}; {remedy}")]
-    BadParameter {
-        /// Its name.
-        name: String,
-        /// The value given.
-        value: String,
-        /// What it should be.
-        remedy: &'static str,
+    /// Marks that do not enclose anything, for a feature that has an inside.
+    #[error("{feature} needs a closed loop of marks; this one {}", open_loop(ends))]
+    OpenLoop {
+        /// The feature.
+        feature: String,
+        /// Marked edges at which it ends; empty where it does not separate the mesh.
+        ends: Vec<(u32, u32)>,
     },
     /// A width that an edge cannot take.
     #[error(transparent)]
@@ -84,4 +264,12 @@ pub enum FeatureError {
     /// The caller cancelled.
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
+}
+
+fn open_loop(ends: &[(u32, u32)]) -> String {
+    if ends.is_empty() {
+        return "does not separate an inside from an outside".into();
+    }
+    let list: Vec<String> = ends.iter().map(|(a, b)| format!("{a},{b}")).collect();
+    format!("ends at the edges {}", list.join(" and "))
 }

@@ -1,7 +1,7 @@
 //! Why a call failed, before it becomes an error handle.
 
 use super::status::*;
-use crate::feature::{FeatureError, SettingError};
+use crate::feature::{FeatureError, ProfileError, RequestError, WidthError};
 use crate::gml::Diagnostic;
 use crate::grammar::{RulesError, RunError};
 use crate::io::{ExportError, ImportError};
@@ -141,9 +141,23 @@ impl From<Cancelled> for Failure {
     }
 }
 
-impl From<SettingError> for Failure {
-    fn from(error: SettingError) -> Self {
-        Self::argument(error.to_string())
+impl From<ProfileError> for Failure {
+    fn from(error: ProfileError) -> Self {
+        let code = match error {
+            ProfileError::Unknown { .. } => WELT_ERROR_ARGUMENT,
+            ProfileError::File { .. } => WELT_ERROR_FILE,
+        };
+        Self::new(code, error.to_string())
+    }
+}
+
+impl From<RequestError> for Failure {
+    fn from(error: RequestError) -> Self {
+        match error {
+            RequestError::Profile(error) => error.into(),
+            RequestError::Rules(error) => error.into(),
+            RequestError::Setting(_) | RequestError::KindTwice { .. } => Self::argument(error.to_string()),
+        }
     }
 }
 
@@ -209,10 +223,12 @@ impl From<FeatureError> for Failure {
     fn from(error: FeatureError) -> Self {
         let message = error.to_string();
         match error {
-            FeatureError::Width(width) => {
-                let location = Location::Edge(width.edge.0, width.edge.1);
-                let place = Place { location, message: message.clone(), text: None };
-                Self { code: WELT_ERROR_ARGUMENT, message, places: vec![place] }
+            FeatureError::Width(WidthError { edge, .. }) | FeatureError::UnknownKind { edge, .. } => {
+                Self { places: vec![Place::edge(edge, message.clone())], ..Self::argument(message) }
+            }
+            FeatureError::OpenLoop { ends, .. } => {
+                let places = ends.into_iter().map(|edge| Place::edge(edge, message.clone())).collect();
+                Self { places, ..Self::argument(message) }
             }
             FeatureError::Rules(error) => error.into(),
             FeatureError::Cancelled(cancelled) => cancelled.into(),

@@ -10,7 +10,7 @@ use super::options::{self, Options};
 use super::report::WeltReport;
 use super::rules::WeltRules;
 use super::selection::WeltSelection;
-use crate::feature::{self, Feature, PROFILES, Profile};
+use crate::feature::{self, Profile, Request};
 use crate::job::Job;
 use crate::mesh::VertexId;
 use crate::optimise::Method;
@@ -67,9 +67,10 @@ pub unsafe extern "C" fn welt_feature_options_init(options: *mut WeltFeatureOpti
     unsafe { boundary(std::ptr::null_mut(), || options::initialise(options, size)) }
 }
 
-/// Lists the features that welt_feature_apply knows.
+/// Lists the features that come with the library.
 ///
-/// list: receives a report whose JSON is an array of features, each with name, help and parameters (name, default, help);
+/// list: receives a report whose JSON is an array of features, each with name, help and parameters: name, unit (length or
+/// count), default (a number in model units, or a text such as "30%"), low, high (null where only the mesh sets a bound), help;
 /// free it with welt_report_free.
 ///
 /// Since: 0.1.
@@ -78,28 +79,11 @@ pub unsafe extern "C" fn welt_feature_list(list: *mut *mut WeltReport, error: *m
     let body = || {
         // SAFETY: the header asks for a place for the handle.
         let output = unsafe { Output::new(list, "list") }?;
-        output.handle(WeltReport::new(&PROFILES)?);
+        output.handle(WeltReport::new(&Profile::shipped()?)?);
         Ok(())
     };
     // SAFETY: the header asks for NULL or a place for an error.
     unsafe { boundary(error, body) }
-}
-
-/// Settings `NAME=VALUE`, separated by blanks.
-fn read_options(
-    text: &str,
-    options: WeltFeatureOptions,
-    for_rules: bool,
-) -> Result<feature::Options, Failure> {
-    let mut read = feature::Options {
-        method: method(options.fit)?,
-        samples: if options.deviation != 0 { SAMPLES } else { 0 },
-        ..feature::Options::default()
-    };
-    for setting in text.split_whitespace() {
-        read.set(setting, for_rules)?;
-    }
-    Ok(read)
 }
 
 /// What both ways of applying share.
@@ -110,7 +94,7 @@ fn read_options(
 unsafe fn apply(
     mesh: *mut WeltMesh,
     selection: *const WeltSelection,
-    feature: &Feature,
+    request: impl FnOnce(&[&str]) -> Result<Request, Failure>,
     settings: *const c_char,
     settings_length: usize,
     options: *const WeltFeatureOptions,
@@ -128,12 +112,18 @@ unsafe fn apply(
             Output::optional(report, "report")?,
         )
     };
-    let options = read_options(text, options, feature.profile.is_none())?;
+    let options = feature::Options {
+        method: method(options.fit)?,
+        samples: if options.deviation != 0 { SAMPLES } else { 0 },
+        ..feature::Options::default()
+    };
+    let settings: Vec<&str> = text.split_whitespace().collect();
+    let request = request(&settings)?;
     let idle = Job::new();
     let job = job.map_or(&idle, |job| &job.job);
     let done = mesh.change(|mesh| {
         let selection = selection.on(mesh)?;
-        Ok(feature::apply(mesh, selection, feature, &options, job)?)
+        Ok(feature::apply(mesh, selection, &request, &options, job)?)
     })?;
     if let Some(report) = report {
         report.handle(WeltReport::new(&done)?);
@@ -141,30 +131,33 @@ unsafe fn apply(
     Ok(())
 }
 
-/// Applies a feature: rewrites the mesh along the marked edges, fits it to the surface as it was, displaces it to the asked
-/// width and depth.
+/// Applies features: rewrites the mesh along the marked edges, fits it to the surface as it was, displaces it to the asked
+/// widths, depths and heights.
 ///
 /// mesh: is changed; vertices keep their numbers, new ones follow.
-/// selection: the marked edges, made on this mesh, whose edges are unchanged since.
-/// name: the feature, one that welt_feature_list lists, such as groove.
-/// name_length: in bytes, SIZE_MAX for a NUL-terminated name.
-/// settings: may be NULL; NAME=VALUE, separated by blanks, such as "width=0.2 depth=30%": model units, or a percentage of
-/// the length of the marked edge.
+/// selection: the marked edges, made on this mesh, whose edges are unchanged since. A mark asks for the feature that its kind
+/// (#kind) names; one without a kind asks for the first feature.
+/// features: one or more, one per line: FEATURE or KIND=FEATURE, where FEATURE is one that welt_feature_list lists, such as
+/// groove, or a profile file ending in .toml. Features of the list that marks name need not be given here.
+/// features_length: in bytes, SIZE_MAX for a NUL-terminated text.
+/// settings: may be NULL; NAME=VALUE, or KIND.NAME=VALUE for one feature of several, separated by blanks, such as
+/// "width=0.2 depth=30%": model units, or a percentage of the length of the marked edge.
 /// settings_length: in bytes, SIZE_MAX for a NUL-terminated text.
 /// options: may be NULL for defaults.
 /// job: may be NULL.
-/// report: may be NULL; else receives what was done: counts, rules, leftovers, width and depth asked and reached,
-/// deviations, warnings. Free it with welt_report_free.
+/// report: may be NULL; else receives what was done: counts, rules, leftovers, dimensions asked and reached, deviations,
+/// warnings. Free it with welt_report_free.
 ///
 /// Fails with WELT_ERROR_ARGUMENT (an unknown feature or setting, a selection of another mesh, a width that an edge cannot
-/// take: the place is the edge), WELT_ERROR_RULE, WELT_ERROR_CANCELLED; the mesh is as it was before then. Since: 0.1.
+/// take: the place is the edge), WELT_ERROR_FILE, WELT_ERROR_RULE, WELT_ERROR_CANCELLED; the mesh is as it was before then.
+/// Since: 0.1.
 #[unsafe(no_mangle)]
 #[allow(clippy::too_many_arguments)]
 pub unsafe extern "C" fn welt_feature_apply(
     mesh: *mut WeltMesh,
     selection: *const WeltSelection,
-    name: *const c_char,
-    name_length: usize,
+    features: *const c_char,
+    features_length: usize,
     settings: *const c_char,
     settings_length: usize,
     options: *const WeltFeatureOptions,
@@ -174,15 +167,11 @@ pub unsafe extern "C" fn welt_feature_apply(
 ) -> i32 {
     let body = || {
         // SAFETY: the header asks for a string of this length.
-        let name = unsafe { arguments::text(name, name_length, "name") }?;
-        let profile = Profile::named(name).ok_or_else(|| {
-            let known: Vec<&str> = PROFILES.iter().map(|profile| profile.name).collect();
-            Failure::argument(format!("there is no feature '{name}'; there are {}", known.join(", ")))
-        })?;
-        let rules = feature::linear_rules()?;
-        let feature = Feature { rules: &rules, profile: Some(profile) };
+        let features = unsafe { arguments::text(features, features_length, "features") }?;
+        let names: Vec<&str> = features.lines().map(str::trim).filter(|line| !line.is_empty()).collect();
+        let request = |settings: &[&str]| Ok(Request::features(&names, settings)?);
         // SAFETY: the header asks for what `apply` asks for.
-        unsafe { apply(mesh, selection, &feature, settings, settings_length, options, job, report) }
+        unsafe { apply(mesh, selection, request, settings, settings_length, options, job, report) }
     };
     // SAFETY: the header asks for NULL or a place for an error.
     unsafe { boundary(error, body) }
@@ -212,9 +201,9 @@ pub unsafe extern "C" fn welt_rules_apply(
     let body = || {
         // SAFETY: the header asks for living rules.
         let rules = unsafe { arguments::handle(rules, "rules") }?;
-        let feature = Feature { rules: &rules.rules, profile: None };
+        let request = |settings: &[&str]| Ok(Request::rules(rules.rules.clone(), settings)?);
         // SAFETY: the header asks for what `apply` asks for.
-        unsafe { apply(mesh, selection, &feature, settings, settings_length, options, job, report) }
+        unsafe { apply(mesh, selection, request, settings, settings_length, options, job, report) }
     };
     // SAFETY: the header asks for NULL or a place for an error.
     unsafe { boundary(error, body) }

@@ -6,6 +6,9 @@ use super::value::Value;
 use crate::mesh::{EulerError, HalfEdgeId, Mesh, Node, VertexId};
 use glam::DVec3;
 
+/// Sharpness from which on an edge or a vertex is infinitely sharp (OpenSubdiv's scale).
+const INFINITE: f32 = 10.0;
+
 impl Execution<'_, '_, '_> {
     pub(super) fn make_vefs(&mut self) -> Result<(), Fault> {
         let p1 = self.pop_vec3()?;
@@ -93,6 +96,40 @@ impl Execution<'_, '_, '_> {
         vertices.sort_unstable();
         vertices.dedup();
         vertices.into_iter().try_for_each(|v| self.shift_vertex(v, shift))
+    }
+
+    /// A truth value as a sharpness: 0 smooth, else infinitely sharp.
+    fn pop_flag(&mut self) -> Result<f32, Fault> {
+        Ok(if self.pop_number()? == 0.0 { 0.0 } else { INFINITE })
+    }
+
+    /// `e 1 sharpE`: a crease; `e 0 sharpE`: none.
+    pub(super) fn sharp_edge(&mut self) -> Result<(), Fault> {
+        let sharpness = self.pop_flag()?;
+        let h = self.pop_half_edge()?;
+        self.environment.budget.edit(1)?;
+        self.environment.mesh.set_edge_sharpness(h, sharpness);
+        Ok(())
+    }
+
+    /// `f 1 sharpF`: all edges of the face.
+    pub(super) fn sharp_face(&mut self) -> Result<(), Fault> {
+        let sharpness = self.pop_flag()?;
+        let f = self.pop_side()?;
+        let edges: Vec<HalfEdgeId> = self.environment.mesh.face_half_edges(f).collect();
+        self.environment.budget.spend_many(edges.len() as u64)?;
+        self.environment.budget.edit(edges.len() as u64)?;
+        edges.into_iter().for_each(|h| self.environment.mesh.set_edge_sharpness(h, sharpness));
+        Ok(())
+    }
+
+    /// `v 1 sharpV`: a corner.
+    pub(super) fn sharp_vertex(&mut self) -> Result<(), Fault> {
+        let sharpness = self.pop_flag()?;
+        let v = self.pop_place()?;
+        self.environment.budget.edit(1)?;
+        self.environment.mesh.set_vertex_sharpness(v, sharpness);
+        Ok(())
     }
 
     /// `e s setsharpness`: of the edge of a half-edge, or of a vertex itself.

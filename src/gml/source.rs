@@ -5,12 +5,19 @@ use std::fmt;
 use std::sync::Arc;
 
 /// A text that scripts or rules were read from.
-#[derive(PartialEq, Eq, Default, Debug)]
+#[derive(PartialEq, Eq, Default)]
 pub struct Source {
     /// Name shown in messages: a path, or the name of a built-in file.
     pub name: String,
     /// The whole text.
     pub text: String,
+}
+
+/// The text would drown the rest.
+impl fmt::Debug for Source {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "Source({})", self.name)
+    }
 }
 
 /// Mistakes after which reading ends: who has so many wants to see the first ones.

@@ -107,7 +107,7 @@ impl Reader<'_> {
                 }
                 self.known_phases.push(name.clone());
                 self.phase = name;
-                Ok(())
+                self.again(cursor)
             }
             "rule" => self.rule(cursor),
             "" => {
@@ -118,6 +118,22 @@ impl Reader<'_> {
                 Err(cursor.error(span, format!("`{other}` has no meaning here; expected {}", keywords())))
             }
         }
+    }
+
+    /// `again NAME` after the name of a phase.
+    fn again(&mut self, cursor: &mut Cursor) -> Result<(), Diagnostic> {
+        let before = cursor.clone();
+        cursor.skip_space();
+        if cursor.name() != "again" {
+            *cursor = before;
+            return Ok(());
+        }
+        let (target, span) = expect_name(cursor, "the name of a phase")?;
+        if !self.known_phases.contains(&target) {
+            return Err(cursor.error(span, format!("no phase `{target}` was begun before")));
+        }
+        self.rules.again.insert(self.phase.clone(), target);
+        Ok(())
     }
 
     fn include(&mut self, cursor: &mut Cursor) -> Result<(), Diagnostic> {

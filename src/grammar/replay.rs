@@ -15,10 +15,7 @@ impl Run<'_> {
             return Err(differs(None, "the trace ends before this run of the rules"));
         };
         if digest(self.mesh) != pass.before {
-            return Err(differs(
-                None,
-                "the mesh is not the one the trace was made on, or it was marked otherwise",
-            ));
+            return Err(differs(None, "the mesh is not the one the trace was made on"));
         }
         for (i, application) in pass.applications.iter().enumerate() {
             let step = Some((i + 1, application));

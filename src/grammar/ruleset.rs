@@ -100,6 +100,8 @@ pub struct RuleSet {
     pub(super) rules: Vec<Rule>,
     /// Phases in their order, as ranges of `rules`.
     pub(super) phases: Vec<std::ops::Range<usize>>,
+    /// Phases after which the run goes back to an earlier one when they applied a rule.
+    pub(super) again: BTreeMap<String, String>,
     /// Names of attributes and links that patterns mention.
     pub(super) names: Strings,
     pub(super) strings: Strings,

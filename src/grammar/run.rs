@@ -38,6 +38,9 @@ impl Default for Limits {
     }
 }
 
+/// Applications that a trace can hold: about 500 bytes each.
+const MOST_RECORDED: usize = 1_000_000;
+
 /// How to run rules.
 #[derive(Clone, Default, Debug)]
 pub struct RunOptions<'a> {
@@ -202,20 +205,30 @@ impl<'a> Run<'a> {
         }
         let before = digest(self.mesh);
         self.recorded = Some(Vec::new());
-        self.run_phases()?;
+        let result = self.run_phases();
         let applications = self.recorded.take().unwrap_or_default();
+        // Of a run that failed, the trace shows how it came to that.
         tracer.add(Pass { applications, before, after: digest(self.mesh) });
+        result?;
         self.outcome()
     }
 
     fn run_phases(&mut self) -> Result<(), RunError> {
         let rules = self.rules;
-        for phase in &rules.phases {
+        let mut at = 0;
+        while let Some(phase) = rules.phases.get(at) {
+            let before = self.total;
             for rule in phase.clone() {
                 self.seed(rule);
             }
             self.phase = phase.clone();
             self.run_phase(phase.clone())?;
+            let name =
+                |phase: &std::ops::Range<usize>| rules.rules.get(phase.start).map(|rule| rule.phase.as_str());
+            let again = name(phase).and_then(|name| rules.again.get(name)).filter(|_| self.total > before);
+            let target =
+                again.and_then(|again| rules.phases.iter().position(|phase| name(phase) == Some(again)));
+            at = target.unwrap_or(at + 1);
         }
         Ok(())
     }
@@ -376,7 +389,11 @@ impl<'a> Run<'a> {
             let limit = format!("more than {} applications", self.limits.applications);
             return Err(self.runaway(limit, rule));
         }
-        if self.recorded.is_some() {
+        if let Some(recorded) = &self.recorded {
+            if recorded.len() >= MOST_RECORDED {
+                let limit = format!("more than {MOST_RECORDED} applications, which no trace can hold");
+                return Err(self.runaway(limit, rule));
+            }
             let application = Application::new(&rule.name, &self.place(rule));
             self.recorded.get_or_insert_default().push(application);
         }

@@ -192,7 +192,10 @@ fn outlines(rule: &Rule, shape: &mut Shape) -> Vec<Outline> {
 fn outline(rule: &Rule, shape: &mut Shape, h: usize) -> Outline {
     let first = |shape: &Shape, h: usize| {
         let mut at = h;
-        while let Some(prev) = shape.side(at, Side::Prev).filter(|&prev| prev != h) {
+        while let Some(prev) = shape.side(at, Side::Prev) {
+            if prev == h {
+                return h;
+            }
             at = prev;
         }
         at
@@ -254,7 +257,9 @@ fn outline(rule: &Rule, shape: &mut Shape, h: usize) -> Outline {
             }
         }
     }
-    let start = begins.iter().position(|begins| *begins).unwrap_or(0);
+    // The side of the node that is named first lies below.
+    let named = (0..edges.len()).min_by_key(|&i| edges[i]).unwrap_or(0);
+    let start = (0..=named).rev().chain((0..edges.len()).rev()).find(|&i| begins[i]).unwrap_or(0);
     edges.rotate_left(start);
     begins.rotate_left(start);
     Outline { edges: edges.iter().map(|&h| shape.root(h)).collect(), begins }

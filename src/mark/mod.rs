@@ -5,10 +5,12 @@
 //! affected edges"), where the rules find them.
 
 mod file;
+mod orient;
 mod path;
 mod resolve;
 mod selector;
 
+pub use orient::{Chains, orient};
 pub use resolve::{MarkError, Selection, StopReason, StripEnd};
 pub use selector::{Selector, SelectorError, Shape};
 

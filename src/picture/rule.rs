@@ -10,7 +10,7 @@ use std::fmt::Write;
 const SCALE: f64 = 260.0;
 const MARGIN: f64 = 46.0;
 /// Between the two meshes, for the arrow.
-const GAP: f64 = 90.0;
+const GAP: f64 = 130.0;
 const RED: &str = "#c8102e";
 const BLUE: &str = "#1f5fbf";
 const GREY: &str = "#777";
@@ -31,7 +31,7 @@ pub fn rule_svg(set: &RuleSet, rule: &Rule) -> String {
     page.mesh(&sample.mesh, &sample.mesh);
     page.names(&sample);
     let middle = 30.0 + MARGIN + size.y / 2.0;
-    page.arrow(right - 0.8 * GAP, right - 0.2 * GAP, middle);
+    page.arrow(right - 0.68 * GAP, right - 0.32 * GAP, middle);
     page.left = right;
     match &result {
         Ok(after) => page.mesh(after, &sample.mesh),
@@ -56,10 +56,19 @@ fn document(title: &str, width: f64, height: f64, body: &str) -> String {
     format!(
         "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width:.0}\" height=\"{height:.0}\" viewBox=\"0 0 {width:.0} {height:.0}\">\n\
          <title>{title}</title>\n<style>{STYLE}</style>\n\
-         <defs><marker id=\"tip\" viewBox=\"0 0 10 10\" refX=\"9\" refY=\"5\" markerWidth=\"9\" markerHeight=\"9\" markerUnits=\"userSpaceOnUse\" orient=\"auto\">\
-         <path d=\"M0 0L10 5L0 10z\" fill=\"context-stroke\"/></marker></defs>\n\
+         <defs>{}{}</defs>\n\
          <rect width=\"100%\" height=\"100%\" fill=\"white\"/>\n\
-         <text x=\"{MARGIN}\" y=\"26\" style=\"font-weight:bold;font-size:15px\">{title}</text>\n{body}</svg>\n"
+         <text x=\"{MARGIN}\" y=\"26\" style=\"font-weight:bold;font-size:15px\">{title}</text>\n{body}</svg>\n",
+        tip("tip", "#222"),
+        tip("blue", BLUE)
+    )
+}
+
+/// An arrow head.
+fn tip(id: &str, colour: &str) -> String {
+    format!(
+        "<marker id=\"{id}\" viewBox=\"0 0 10 10\" refX=\"9\" refY=\"5\" markerWidth=\"10\" markerHeight=\"10\" \
+         markerUnits=\"userSpaceOnUse\" orient=\"auto\"><path d=\"M0 0L10 5L0 10z\" fill=\"{colour}\"/></marker>"
     )
 }
 
@@ -143,7 +152,9 @@ impl Page {
             let radius = if before.has_vertex(v) { 3.0 } else { 4.6 };
             let _ = writeln!(self.svg, "<circle cx=\"{:.1}\" cy=\"{:.1}\" r=\"{radius}\"/>", p.x, p.y);
             let words = words(mesh, Node::Vertex(v));
-            self.text(p + DVec2::new(8.0, -11.0), &words, GREY, "start");
+            // The others would run into one another.
+            let first = words.split(", ").next().unwrap_or("");
+            self.text(p + DVec2::new(6.0, -11.0), first, GREY, "start");
         }
         for f in mesh.faces() {
             let p = self.place(mesh.place(Node::Face(f)).truncate());
@@ -179,7 +190,7 @@ impl Page {
             let middle = from.midpoint(to) + bow;
             let _ = writeln!(
                 self.svg,
-                "<path d=\"M{:.1} {:.1}Q{:.1} {:.1} {:.1} {:.1}\" style=\"fill:none;stroke:{BLUE};stroke-width:2.2;marker-end:url(#tip)\"/>",
+                "<path d=\"M{:.1} {:.1}Q{:.1} {:.1} {:.1} {:.1}\" style=\"fill:none;stroke:{BLUE};stroke-width:2.2;marker-end:url(#blue)\"/>",
                 from.x, from.y, middle.x, middle.y, to.x, to.y
             );
             let label = mesh.symbol_name(label).to_owned();

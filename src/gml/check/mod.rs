@@ -51,8 +51,10 @@ pub(crate) struct Effects {
     pub(crate) topology: bool,
     /// It may move vertices or set sharpness.
     pub(crate) moves: bool,
-    /// It may set or delete attributes and links that are not in the list.
-    pub(crate) unknown: bool,
+    /// It may set attributes and links that are not in the list.
+    pub(crate) sets_more: bool,
+    /// It may delete attributes and links that are not in the list.
+    pub(crate) deletes_more: bool,
 }
 
 /// What the check found.
@@ -117,7 +119,13 @@ pub(crate) fn check(program: &Program, leaves: Leaves) -> Checked {
     let mistake = match checker.block(0) {
         Ok(()) => checker.end(leaves).map(|message| program.error(program.last_op(), message)),
         Err(End::Unknown) => {
-            checker.effects.unknown = true;
+            checker.effects = Effects {
+                sets_more: true,
+                deletes_more: true,
+                topology: true,
+                moves: true,
+                ..checker.effects
+            };
             None
         }
         Err(End::Mistake(op, message)) => Some(program.error(op, message)),
@@ -195,10 +203,12 @@ impl Checker<'_> {
             for op in &self.program.ops[self.program.block(block as u32)..end] {
                 let Op::Word(word) = op else { continue };
                 match word {
-                    Word::AttrSet | Word::AttrDel | Word::LinkSet | Word::LinkDel => {
-                        self.effects.unknown = true
+                    Word::AttrSet | Word::LinkSet => self.effects.sets_more = true,
+                    Word::AttrDel | Word::LinkDel => self.effects.deletes_more = true,
+                    Word::MoveV | Word::MoveE | Word::MoveF => self.effects.moves = true,
+                    Word::SharpE | Word::SharpF | Word::SharpV | Word::SetSharpness => {
+                        self.effects.moves = true
                     }
-                    Word::MoveV | Word::MoveE | Word::MoveF | Word::SetSharpness => self.effects.moves = true,
                     word => self.effects.topology |= word.signature().edits,
                 }
             }

@@ -168,7 +168,9 @@ impl Checker<'_> {
         match (word, taken) {
             (Word::AttrSet | Word::AttrDel | Word::LinkSet | Word::LinkDel, [_, key, rest @ ..]) => {
                 let (Some(Value::Text(key)) | Some(Value::Name(key))) = key.value else {
-                    self.effects.unknown = true;
+                    let sets = matches!(word, Word::AttrSet | Word::LinkSet);
+                    self.effects.sets_more |= sets;
+                    self.effects.deletes_more |= !sets;
                     return;
                 };
                 let effect = Effect { word, key, value: rest.first().and_then(|value| value.value) };
@@ -176,7 +178,8 @@ impl Checker<'_> {
                     self.effects.annotations.push(effect);
                 }
             }
-            (Word::MoveV | Word::MoveE | Word::MoveF | Word::SetSharpness, _) => self.effects.moves = true,
+            (Word::MoveV | Word::MoveE | Word::MoveF, _) => self.effects.moves = true,
+            (Word::SharpE | Word::SharpF | Word::SharpV | Word::SetSharpness, _) => self.effects.moves = true,
             _ => self.effects.topology |= word.signature().edits,
         }
     }

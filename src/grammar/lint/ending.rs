@@ -28,7 +28,7 @@ fn stays_matched(set: &RuleSet, rule: &Rule) -> Option<Diagnostic> {
     let effects = &rule.effects;
     let alone = effects.annotations.is_empty() && !effects.topology && !effects.moves;
     // A condition may look at anything.
-    if effects.unknown || (!rule.conditions.is_empty() && !alone) {
+    if effects.sets_more || effects.deletes_more || (!rule.conditions.is_empty() && !alone) {
         return None;
     }
     // Faces and rings look different after an Euler operator; a pattern of single elements does not.
@@ -60,7 +60,7 @@ fn circles(set: &RuleSet, rules: &[Rule]) -> Vec<Diagnostic> {
     let is_bounded = |rule: &Rule| {
         let compared =
             rule.pattern.nodes.iter().flat_map(|node| &node.tests).any(|test| test.value.is_some());
-        compared || !rule.conditions.is_empty() || !rule.forbidden.is_empty() || rule.effects.unknown
+        compared || !rule.conditions.is_empty() || !rule.forbidden.is_empty() || rule.effects.deletes_more
     };
     let feeds = |from: &Rule, to: &Rule| {
         !is_bounded(from) && to.needs().any(|(kind, name, _)| !from.sets(set, kind, name).is_empty())

@@ -11,8 +11,8 @@ use super::ruleset::{Rule, RuleSet};
 use crate::gml::{Diagnostic, Op, Span, Value as Script, Word};
 use crate::mesh::Value;
 
-/// Attributes that marks bring (`mark::place`, and the feature stage for the lines of a profile).
-const OF_MARKS: [&str; 4] = ["color", "t", "cuts", "mark"];
+/// Attributes that marks bring (`mark::place`).
+const OF_MARKS: [&str; 2] = ["color", "t"];
 
 /// All warnings about `set`, in the order of the text.
 pub(super) fn warnings(set: &RuleSet) -> Vec<Diagnostic> {

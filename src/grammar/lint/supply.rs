@@ -9,11 +9,9 @@ use crate::grammar::search::compare;
 use crate::mesh::Value;
 
 pub(super) fn warnings(set: &RuleSet, rule: &Rule) -> Vec<Diagnostic> {
-    if set.rules.iter().any(|rule| rule.effects.unknown) {
-        return Vec::new();
-    }
     let mut found = Vec::new();
-    for (kind, name, span) in rule.needs() {
+    let sets_all = !set.rules.iter().any(|rule| rule.effects.sets_more);
+    for (kind, name, span) in rule.needs().filter(|_| sets_all) {
         if set.is_input(kind, name) {
             continue;
         }
@@ -25,7 +23,7 @@ pub(super) fn warnings(set: &RuleSet, rule: &Rule) -> Vec<Diagnostic> {
             found.push(rule.warning(span, message));
         }
     }
-    for test in rule.pattern.nodes.iter().flat_map(|node| &node.tests) {
+    for test in rule.pattern.nodes.iter().flat_map(|node| &node.tests).filter(|_| sets_all) {
         found.extend(no_such_value(set, rule, test));
     }
     found.extend(left_behind(set, rule));
@@ -59,7 +57,9 @@ fn left_behind(set: &RuleSet, rule: &Rule) -> Option<Diagnostic> {
     let changes = |other: &Rule| {
         let test = |test: &Test| test.attribute == name && test.value.is_some();
         let tested = rule.pattern.nodes.iter().flat_map(|node| &node.tests).any(test);
-        other.deletes(set, kind, name) || (tested && !other.sets(set, kind, name).is_empty())
+        other.effects.deletes_more
+            || other.deletes(set, kind, name)
+            || (tested && !other.sets(set, kind, name).is_empty())
     };
     if set.rules.iter().any(changes) {
         return None;

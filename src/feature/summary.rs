@@ -1,0 +1,132 @@
+//! The report of a run that went through.
+
+use super::aftermath::{affected_faces, feature_edges, settle, without_texcoords};
+use super::linear::Pass;
+use super::prepare::Run;
+use super::profile::Unit;
+use super::report::{Counts, Dimension, FeatureReport, Report, Warning};
+use super::{FeatureError, deviation};
+use crate::job::Job;
+use crate::mesh::{Mesh, VertexId};
+use glam::DVec3;
+use std::collections::BTreeMap;
+
+/// Dimensions that miss the asked one by more than this fraction are counted in the report.
+const NOTICEABLE: f64 = 0.03;
+
+impl Run<'_> {
+    pub(super) fn report(
+        &mut self,
+        mesh: &mut Mesh,
+        pass: Pass,
+        corrections: u32,
+        reference: Option<&deviation::Reference>,
+        walls: Option<&deviation::Walls>,
+        job: &Job,
+    ) -> Result<Report, FeatureError> {
+        job.step("report", 0.8)?;
+        let leftovers = settle(mesh, !self.features.is_empty());
+        let mut displaced = None;
+        let mut fitted = None;
+        if let Some(reference) = reference {
+            let raised: Vec<DVec3> = pass.flat.iter().map(|&(v, _)| mesh.position(v)).collect();
+            let is_raised = pass.flat.iter().zip(&raised).any(|((_, flat), raised)| flat != raised);
+            if is_raised {
+                displaced = Some(reference.difference(mesh, &pass.changed, job)?);
+            }
+            // The surface before displacement once more, for comparison.
+            pass.flat.iter().for_each(|&(v, position)| mesh.set_position(v, position));
+            fitted = Some(reference.difference(mesh, &pass.changed, job)?);
+            pass.flat.iter().zip(raised).for_each(|(&(v, _), position)| mesh.set_position(v, position));
+        }
+        let mut warnings = Vec::new();
+        if !pass.folds.is_empty() {
+            warnings.push(Warning::Fold { vertices: pass.folds.clone() });
+        }
+        if let Some(walls) = walls {
+            warnings.extend(walls.warning(&pass.greens));
+        }
+        self.clock.lap("deviation");
+        let [vertices, edges, faces] = mesh.counts();
+        let mut new_valences = BTreeMap::new();
+        for v in (self.first_vertex..mesh.vertex_bound()).map(|v| VertexId(v as u32)) {
+            if mesh.has_vertex(v) {
+                *new_valences.entry(mesh.valence(v)).or_default() += 1;
+            }
+        }
+        Ok(Report {
+            feature: self.request.title(),
+            before: self.before,
+            after: Counts { vertices, edges, faces },
+            marks: self.marks.len(),
+            ends: self.selection.ends.clone(),
+            non_quads: pass
+                .changed
+                .iter()
+                .map(|&f| (f.0, mesh.arity(f)))
+                .filter(|&(_, arity)| arity != 4)
+                .collect(),
+            new_valences,
+            rules: pass.outcome.applications.clone(),
+            leftovers,
+            features: self.features(&pass),
+            fit: pass.fit,
+            corrections,
+            fitted,
+            displaced,
+            size: reference.map(|reference| reference.size()),
+            without_texcoords: without_texcoords(mesh, &pass.changed),
+            warnings,
+            green: pass.greens.iter().map(|green| green.vertex.0).collect(),
+            feature_edges: feature_edges(mesh, &pass.lines),
+            affected: affected_faces(mesh, &pass.changed).into_iter().map(|f| f.0).collect(),
+            times: self.clock.laps(),
+        })
+    }
+
+    fn features(&self, pass: &Pass) -> Vec<FeatureReport> {
+        self.features
+            .iter()
+            .enumerate()
+            .map(|(index, feature)| FeatureReport {
+                kind: feature.kind.clone(),
+                profile: feature.profile.name.clone(),
+                marks: self.feature_of.iter().filter(|&&f| f == index).count(),
+                dimensions: (0..feature.profile.parameters.len())
+                    .filter(|&p| feature.profile.parameters[p].unit == Unit::Length)
+                    .map(|p| self.dimension(index, p, pass))
+                    .collect(),
+            })
+            .filter(|entry| entry.marks > 0)
+            .collect()
+    }
+
+    fn dimension(&self, feature: usize, parameter: usize, pass: &Pass) -> Dimension {
+        let found: Vec<(usize, f64)> = pass
+            .stations
+            .iter()
+            .zip(&pass.reached)
+            .filter(|(station, _)| self.feature_of[station.mark] == feature)
+            .filter_map(|(station, reached)| Some((station.mark, (*reached.get(parameter)?)?)))
+            .collect();
+        let asked = |mark: usize| self.asked[mark][parameter];
+        let count = found.len() as f64;
+        let ratios = || found.iter().map(|&(mark, reached)| (mark, reached / asked(mark)));
+        // Means and extremes of nothing are no numbers.
+        let extreme = |pick: fn(f64, f64) -> f64| ratios().map(|r| r.1).fold(f64::NAN, pick);
+        let feature = &self.features[feature];
+        Dimension {
+            name: feature.profile.parameters[parameter].name.clone(),
+            asked: feature.length(parameter),
+            stations: found.len(),
+            asked_mean: found.iter().map(|&(mark, _)| asked(mark)).sum::<f64>() / count,
+            reached_mean: found.iter().map(|pair| pair.1).sum::<f64>() / count,
+            off: ratios()
+                .filter(|(_, ratio)| (ratio - 1.0).abs() > NOTICEABLE)
+                .map(|(mark, _)| self.edges[mark])
+                .collect(),
+            worst_low: extreme(f64::min),
+            worst_high: extreme(f64::max),
+        }
+    }
+}
