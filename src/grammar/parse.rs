@@ -8,6 +8,7 @@ use crate::gml::{
     Cursor, Diagnostic, Effects, Leaves, Scope, Source, Span, Strings, check, compile_tokens, is_word, script,
 };
 use crate::mesh::{Domain, Value};
+use glam::DVec3;
 use std::sync::Arc;
 
 /// Files that may include one another in a row.
@@ -17,7 +18,7 @@ const LONGEST: usize = 1 << 24;
 /// Parameters and rules that a rule set may have.
 const MOST_PARAMETERS: usize = 1000;
 const MOST_RULES: usize = 10_000;
-const KEYWORDS: [&str; 6] = ["example", "include", "input", "parameter", "phase", "rule"];
+const KEYWORDS: [&str; 7] = ["example", "include", "input", "parameter", "phase", "rule", "straight"];
 
 pub(super) fn parse(name: &str, text: &str, loader: &Loader<'_>) -> Result<RuleSet, RulesError> {
     let mut reader = Reader {
@@ -99,6 +100,11 @@ impl Reader<'_> {
             "include" => self.include(cursor),
             "example" => self.example(cursor),
             "input" => self.input(cursor),
+            "straight" => {
+                let (name, _) = expect_name(cursor, "the name of an attribute")?;
+                self.rules.straight.insert(name);
+                Ok(())
+            }
             "parameter" => self.parameter(cursor),
             "phase" => {
                 let (name, span) = expect_name(cursor, "the name of a phase")?;
@@ -201,21 +207,11 @@ impl Reader<'_> {
         let start = cursor.offset();
         let value = match cursor.peek() {
             Some('"') => Value::text(&cursor.text()?),
-            Some('[') => {
-                cursor.bump();
-                cursor.skip_space();
-                let mut numbers = Vec::new();
-                while cursor.at_number() {
-                    numbers.push(cursor.number()?);
-                    cursor.skip_space();
-                }
-                if !cursor.eat(']') {
-                    return Err(
-                        cursor.error(cursor.span_from(start), "an array of numbers is written [ 0.25 0.5 ]")
-                    );
-                }
-                Value::Numbers(numbers.into())
-            }
+            Some('[') => Value::Numbers(numbers(cursor, ']')?.into()),
+            Some('(') => match *numbers(cursor, ')')? {
+                [x, y, z] => Value::Vector(DVec3::new(x, y, z)),
+                _ => return Err(cursor.error(cursor.span_from(start), "a vector is written (0.5 0.5 0)")),
+            },
             _ => Value::Number(expect_number(cursor)?.0),
         };
         self.rules.examples.insert(name, value);
@@ -423,6 +419,22 @@ fn expect_help(cursor: &mut Cursor) -> Result<String, Diagnostic> {
         return Err(cursor.error(cursor.span_here(), "expected one line of help in quotes"));
     }
     cursor.text()
+}
+
+/// Numbers between brackets, with or without commas.
+fn numbers(cursor: &mut Cursor, close: char) -> Result<Vec<f64>, Diagnostic> {
+    cursor.bump();
+    let mut numbers = Vec::new();
+    loop {
+        cursor.skip_space();
+        if cursor.eat(close) {
+            return Ok(numbers);
+        }
+        if !numbers.is_empty() && cursor.eat(',') {
+            cursor.skip_space();
+        }
+        numbers.push(expect_number(cursor)?.0);
+    }
 }
 
 /// A number, `inf` or `-inf`.

@@ -8,7 +8,7 @@ use super::plan::{Anchor, NodePlan, Plan, Reach};
 use crate::gml::{Diagnostic, Effects, Program, Source, Span, Strings};
 use crate::mesh::{Domain, Value};
 use serde::Serialize;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -97,6 +97,8 @@ pub struct RuleSet {
     pub(super) declared: Vec<(Arc<Source>, Span)>,
     pub(super) inputs: Vec<Input>,
     pub(super) examples: Examples,
+    /// Vertices with one of these attributes lie inside of straight sides in drawings.
+    pub(super) straight: BTreeSet<String>,
     pub(super) rules: Vec<Rule>,
     /// Phases in their order, as ranges of `rules`.
     pub(super) phases: Vec<std::ops::Range<usize>>,

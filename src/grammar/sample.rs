@@ -41,7 +41,7 @@ impl Sample {
         let number =
             set.rules.iter().position(|known| known.name == rule.name).ok_or("the rule is of another set")?;
         let mut shape = Shape::of(rule).map_err(|(_, message)| message)?;
-        let outlines = outlines(rule, &mut shape);
+        let outlines = outlines(set, rule, &mut shape);
         if outlines.is_empty() {
             return Err("the pattern has no face".to_owned());
         }
@@ -148,7 +148,7 @@ fn passing(set: &RuleSet, tests: &[Test], test: &Test) -> Value {
 }
 
 /// The faces of a shape, made complete where the pattern leaves something open.
-fn outlines(rule: &Rule, shape: &mut Shape) -> Vec<Outline> {
+fn outlines(set: &RuleSet, rule: &Rule, shape: &mut Shape) -> Vec<Outline> {
     for node in 0..rule.nodes.len() {
         // A vertex or a face alone gets a half-edge.
         let lacks = |shape: &Shape, side: Side| {
@@ -177,7 +177,7 @@ fn outlines(rule: &Rule, shape: &mut Shape) -> Vec<Outline> {
                 // Outside: the face is on the other side.
                 shape.get(h, Side::Mate);
             } else {
-                let outline = outline(rule, shape, h);
+                let outline = outline(set, rule, shape, h);
                 done.resize(shape.len(), false);
                 outline.edges.iter().for_each(|&h| done[h] = true);
                 found.push(outline);
@@ -189,7 +189,7 @@ fn outlines(rule: &Rule, shape: &mut Shape) -> Vec<Outline> {
 }
 
 /// Walks round the face of `h` and closes it.
-fn outline(rule: &Rule, shape: &mut Shape, h: usize) -> Outline {
+fn outline(set: &RuleSet, rule: &Rule, shape: &mut Shape, h: usize) -> Outline {
     let first = |shape: &Shape, h: usize| {
         let mut at = h;
         while let Some(prev) = shape.side(at, Side::Prev) {
@@ -201,8 +201,15 @@ fn outline(rule: &Rule, shape: &mut Shape, h: usize) -> Outline {
         at
     };
     let begin = first(shape, h);
+    // A side begins with a half-edge unless it starts at a vertex inside of a side.
+    let corner = |shape: &mut Shape, h: usize| {
+        let v = shape.get(h, Side::Source);
+        let inside = |test: &Test| set.straight.contains(&test.attribute);
+        let at = |node: usize| shape.root(node) == v && rule.pattern.nodes[node].tests.iter().any(inside);
+        !(0..rule.pattern.nodes.len()).any(at)
+    };
     let mut edges = vec![begin];
-    let mut begins = vec![true];
+    let mut begins = vec![corner(shape, begin)];
     loop {
         let last = edges[edges.len() - 1];
         if let Some(next) = shape.side(last, Side::Next) {
@@ -210,7 +217,7 @@ fn outline(rule: &Rule, shape: &mut Shape, h: usize) -> Outline {
                 break;
             }
             edges.push(next);
-            begins.push(true);
+            begins.push(corner(shape, next));
             continue;
         }
         // A link to the begin of a chain runs along a side: pieces lie between.
@@ -232,7 +239,7 @@ fn outline(rule: &Rule, shape: &mut Shape, h: usize) -> Outline {
         for _ in 0..pieces {
             let piece = shape.get(at, Side::Next);
             edges.push(piece);
-            begins.push(!straight);
+            begins.push(!straight && corner(shape, piece));
             at = piece;
         }
         let to = linked.unwrap_or(begin);

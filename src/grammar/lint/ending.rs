@@ -2,7 +2,7 @@
 
 use super::Kind;
 use crate::gml::Diagnostic;
-use crate::grammar::pattern::Pattern;
+use crate::grammar::pattern::{Label, Pattern, PatternEdge};
 use crate::grammar::ruleset::{Rule, RuleSet};
 
 pub(super) fn warnings(set: &RuleSet) -> Vec<Diagnostic> {
@@ -32,7 +32,10 @@ fn stays_matched(set: &RuleSet, rule: &Rule) -> Option<Diagnostic> {
         return None;
     }
     // Faces and rings look different after an Euler operator; a pattern of single elements does not.
-    if effects.topology && !rule.pattern.edges.is_empty() {
+    let is_ring = |edge: &PatternEdge| {
+        matches!(edge.label, Label::FaceCcw | Label::FaceCw | Label::VertexCcw | Label::VertexCw)
+    };
+    if effects.topology && rule.pattern.edges.iter().any(is_ring) {
         return None;
     }
     let takes = |(kind, name): (Kind, &str)| rule.deletes(set, kind, name);
