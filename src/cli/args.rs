@@ -103,7 +103,7 @@ pub struct Apply {
     /// Rule file to run on the marks instead of a feature
     #[arg(long, value_name = "FILE", conflicts_with = "features")]
     pub rules: Option<PathBuf>,
-    /// Edges to mark: edge:A,B[@t], ring:A,B, path:A,B:C,D, cut:V,V,..., select:FILE (0-based vertices); #KIND at the end asks for the feature of that kind
+    /// Edges to mark: edge:A,B[@t], ring:A,B, path:A,B:C,D, cut:V,V,..., polyline:X,Y,Z;..., spline:X,Y,Z;..., select:FILE (0-based vertices); #KIND at the end asks for the feature of that kind
     #[arg(long = "mark", value_name = "SELECTOR", required = true)]
     pub marks: Vec<String>,
     /// Parameters: width=0.3 (model units) or width=30% (of the local edge); KIND.width=30% for one feature of several

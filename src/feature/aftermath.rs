@@ -23,7 +23,7 @@ pub(super) fn settle(mesh: &mut Mesh, has_features: bool) -> Vec<Leftover> {
         mesh.set_attribute(Node::HalfEdge(h), unresolved, Some(kind));
     }
     for (domain, names) in [
-        (Domain::HalfEdge, &["cuts", "lines", "mark", "places", "kind", "color", "t"][..]),
+        (Domain::HalfEdge, &["cuts", "lines", "mark", "places", "kind", "color", "skew", "t"][..]),
         (Domain::Vertex, &["mark", "line", "kind", "cross", "crosskind", "hold"][..]),
     ] {
         for name in names {

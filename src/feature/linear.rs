@@ -1,6 +1,7 @@
 //! The pipeline of a linear feature, and of any rule set on marked edges.
 
 use super::correct::worst;
+use super::curve::centre;
 use super::displace::{Asked, Green, LineVertex, displace, greens, line_vertices};
 use super::measure::{Station, stations};
 use super::prepare::Run;
@@ -128,7 +129,6 @@ impl Run<'_> {
     /// The real faces beside the marked edges.
     fn crossed_faces(&self, mesh: &Mesh) -> Vec<FaceId> {
         let mut faces: Vec<FaceId> = self
-            .selection
             .marks
             .iter()
             .flat_map(|mark| [mark.half_edge, mark.half_edge.mate()])
@@ -162,6 +162,7 @@ impl Run<'_> {
         job: &Job,
     ) -> Result<Pass, FeatureError> {
         job.step("rules", 0.1)?;
+        self.moved.iter().for_each(|&(v, position)| mesh.set_position(v, position));
         self.place_marks(mesh, aims)?;
         let run_options = grammar::RunOptions {
             parameters: self.request.numbers.clone(),
@@ -170,7 +171,10 @@ impl Run<'_> {
             ..grammar::RunOptions::default()
         };
         let outcome = grammar::run(&self.request.rules, mesh, &run_options)?;
-        let changed = outcome.touched.clone();
+        let changed = self.changed(mesh, &outcome);
+        let lines = line_vertices(mesh, |kind| self.kind(kind));
+        let track_of = |mark: usize| self.track_of.get(mark).copied().flatten();
+        centre(mesh, &lines, &self.tracks, track_of, |feature| self.features[feature].profile.middle());
         self.clock.lap("rules");
 
         job.step("fit", 0.3)?;
@@ -183,7 +187,7 @@ impl Run<'_> {
             outcome,
             changed,
             fit,
-            lines: Vec::new(),
+            lines,
             greens: Vec::new(),
             stations: Vec::new(),
             reached: Vec::new(),
@@ -191,7 +195,6 @@ impl Run<'_> {
             flat: Vec::new(),
         };
         if !self.features.is_empty() {
-            pass.lines = line_vertices(mesh, |kind| self.kind(kind));
             let asked = Asked {
                 features: &self.features,
                 feature_of: &self.feature_of,
@@ -204,6 +207,18 @@ impl Run<'_> {
         }
         self.clock.lap("displace");
         Ok(pass)
+    }
+
+    /// Faces that the rules touched, and those whose vertices made room for a curve.
+    fn changed(&self, mesh: &Mesh, outcome: &grammar::Outcome) -> Vec<FaceId> {
+        let mut changed = outcome.touched.clone();
+        if !self.moved.is_empty() {
+            let around = self.moved.iter().flat_map(|&(v, _)| mesh.outgoing(v)).map(|h| mesh.face(h));
+            changed.extend(around.filter(|f| !f.is_boundary()));
+            changed.sort_unstable();
+            changed.dedup();
+        }
+        changed
     }
 
     /// The feature that a kind on a vertex names.
@@ -224,6 +239,7 @@ impl Run<'_> {
         mark::place(mesh, &self.marks);
         let [cuts_name, lines_name, mark_name, color] =
             ["cuts", "lines", "mark", "color"].map(|name| mesh.intern(name));
+        let skew = mesh.intern("skew");
         for (i, (mark, values)) in self.marks.iter().zip(aims).enumerate() {
             let forward = self.cuts(mesh, i, values)?;
             let lines: Vec<f64> = (1..=forward.len()).map(|line| line as f64).collect();
@@ -237,6 +253,9 @@ impl Run<'_> {
                 mesh.set_attribute(node, lines_name, Some(Value::Numbers(lines.into())));
                 mesh.set_attribute(node, mark_name, Some(Value::Number(i as f64)));
                 mesh.set_attribute(node, color, Some(kind.clone()));
+                if mark.breadth.is_some() {
+                    mesh.set_attribute(node, skew, Some(Value::Number(1.0)));
+                }
             }
         }
         Ok(())

@@ -7,6 +7,7 @@
 mod aftermath;
 mod clock;
 mod correct;
+mod curve;
 mod deviation;
 mod displace;
 mod enclosed;
@@ -28,7 +29,7 @@ pub use length::{Length, significant};
 pub use linear::apply;
 pub use place::WidthError;
 pub use profile::{Height, Line, Parameter, Profile, ProfileError, Unit};
-pub use report::{Counts, Difference, Dimension, FeatureReport, Leftover, Report, Warning};
+pub use report::{Counts, Difference, Dimension, FeatureReport, Leftover, OffCurve, Report, Warning};
 pub use request::{Feature, FeatureError, Options, Request, RequestError};
 pub use settings::SettingError;
 

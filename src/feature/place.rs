@@ -90,7 +90,11 @@ pub(super) fn cuts(
             lines => lines.iter().map(|line| (1.0 + line.across) / 2.0).collect(),
         });
     };
-    let sine = crossing_sine(mesh, mark);
+    // Along the edge, or across the feature where that is known: the lines divide both in the same ratios.
+    let (length, sine) = match mark.breadth {
+        Some(breadth) => (breadth, 1.0),
+        None => (length, crossing_sine(mesh, mark)),
+    };
     let lowest = CLEARANCE * length / section.least_gap();
     let highest = (mark.t.min(1.0 - mark.t) - CLEARANCE) * length;
     let half = section.half_width(width / sine, length, mark.t);

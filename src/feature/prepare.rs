@@ -2,15 +2,23 @@
 //! counts, and what it is to measure.
 
 use super::clock::Clock;
+use super::curve::{Track, trace};
 use super::enclosed::enclosed;
 use super::place::{crossing_sine, cuts};
-use super::profile::Unit;
 use super::report::Counts;
 use super::request::{Feature, feature_of};
 use super::section::Section;
 use super::{FeatureError, Options, Request};
 use crate::mark::{Mark, Selection, orient};
 use crate::mesh::{Mesh, VertexId};
+use glam::DVec3;
+use rustc_hash::FxHashSet;
+
+/// Distance that vertices keep from a curve, in half widths of the control band: a third of a half width beyond the rim
+/// (docs/linear-features.md, section 6).
+const CLEARANCE: f64 = 4.0 / 3.0;
+/// Room that a curve without width keeps from vertices, as a fraction of the edge.
+const LEAST_ROOM: f64 = 0.03;
 
 /// Everything that stays the same while the pipeline runs.
 pub(super) struct Run<'a> {
@@ -29,6 +37,11 @@ pub(super) struct Run<'a> {
     pub(super) asked: Vec<Vec<f64>>,
     /// Vertices inside of closed loops and their features.
     pub(super) inside: Vec<(VertexId, usize)>,
+    /// Curves on the surface, and the curve that each mark lies on.
+    pub(super) tracks: Vec<Track>,
+    pub(super) track_of: Vec<Option<usize>>,
+    /// Vertices that lie in the way of bands along curves, and where they go.
+    pub(super) moved: Vec<(VertexId, DVec3)>,
     pub(super) before: Counts,
     /// Ids below these were there before.
     pub(super) first_vertex: usize,
@@ -43,7 +56,7 @@ impl<'a> Run<'a> {
         request: &'a Request,
         options: &'a Options,
     ) -> Result<Self, FeatureError> {
-        if selection.marks.is_empty() {
+        if selection.marks.is_empty() && (selection.curves.is_empty() || request.features.is_empty()) {
             return Err(FeatureError::NoMarks);
         }
         if let Some(mark) = selection.marks.iter().position(|mark| !mesh.has_half_edge(mark.half_edge)) {
@@ -64,23 +77,61 @@ impl<'a> Run<'a> {
             feature_of: Vec::new(),
             asked: Vec::new(),
             inside: Vec::new(),
+            tracks: Vec::new(),
+            track_of: vec![None; selection.marks.len()],
+            moved: Vec::new(),
             before: Counts { vertices, edges, faces },
             first_vertex: mesh.vertex_bound(),
             first_face: mesh.face_bound(),
             clock: Clock::start(),
         };
         if !request.features.is_empty() {
+            run.trace_curves(mesh)?;
             run.assign(mesh)?;
         }
         Ok(run)
     }
 
+    /// Finds the edges that the curves of the selection cross, and adds them to the marks.
+    fn trace_curves(&mut self, mesh: &Mesh) -> Result<(), FeatureError> {
+        let mut crossed: FxHashSet<u32> = self.marks.iter().map(|mark| mark.half_edge.edge()).collect();
+        for (index, curve) in self.selection.curves.iter().enumerate() {
+            let Some(feature) = feature_of(&mut self.features, &curve.kind) else {
+                let problem = format!("no feature has the name of its kind, #{}", curve.kind);
+                return Err(FeatureError::Curve { curve: index, problem });
+            };
+            let feature = &self.features[feature];
+            // Distance that vertices keep from the curve: where it is least, the width must still be possible.
+            let room = |edge: f64| {
+                let values = feature.values(edge, edge);
+                let section = Section::new(&feature.profile, &values);
+                let width = feature.profile.width().map_or(0.0, |p| values[p]);
+                let half_width = width / section.full_width(1.0, 2.0 * CLEARANCE, 0.5).max(f64::MIN_POSITIVE);
+                (CLEARANCE * half_width).max(LEAST_ROOM * edge)
+            };
+            let traced = trace(mesh, curve, index, room)?;
+            for mark in traced.marks {
+                let edge = (mesh.source(mark.half_edge).0, mesh.target(mark.half_edge).0);
+                if !crossed.insert(mark.half_edge.edge()) {
+                    return Err(FeatureError::CrossedTwice { edge });
+                }
+                self.edges.push(edge);
+                self.track_of.push(Some(index));
+                self.marks.push(mark);
+            }
+            self.moved.extend(traced.moved);
+            self.tracks.push(traced.track);
+        }
+        Ok(())
+    }
+
     fn assign(&mut self, mesh: &Mesh) -> Result<(), FeatureError> {
-        for (mark, &edge) in self.marks.iter().zip(&self.edges) {
-            let Some(feature) = feature_of(&mut self.features, &mark.kind) else {
+        for mark in 0..self.marks.len() {
+            let kind = &self.marks[mark].kind;
+            let Some(feature) = feature_of(&mut self.features, kind) else {
                 return Err(FeatureError::UnknownKind {
-                    edge,
-                    kind: mark.kind.clone(),
+                    edge: self.edges[mark],
+                    kind: kind.clone(),
                     known: self.features.iter().map(|feature| feature.kind.clone()).collect(),
                 });
             };
@@ -95,17 +146,9 @@ impl<'a> Run<'a> {
         for (mark, &feature) in self.marks.iter().zip(&self.feature_of) {
             let feature = &self.features[feature];
             let length = mesh.edge_length(mark.half_edge);
-            let values = feature.profile.parameters.iter().enumerate().map(|(p, parameter)| {
-                match parameter.unit {
-                    Unit::Count => feature.length(p).value(),
-                    // A share of an edge that is crossed at a slant is a share of its extent across the feature.
-                    Unit::Length if Some(p) == feature.profile.width() => {
-                        feature.length(p).on_edge(length * crossing_sine(mesh, mark))
-                    }
-                    Unit::Length => feature.length(p).on_edge(length),
-                }
-            });
-            self.asked.push(values.collect());
+            // A share of an edge that is crossed at a slant is a share of its extent across the feature.
+            let breadth = mark.breadth.unwrap_or_else(|| length * crossing_sine(mesh, mark));
+            self.asked.push(feature.values(length, breadth));
         }
         // Refuse widths that do not fit before anything is done.
         for (mark, values) in self.asked.iter().enumerate() {

@@ -142,6 +142,12 @@ impl Profile {
         self.parameter("width")
     }
 
+    /// The line in the middle, which lies on the curve that a feature follows; from 0.
+    pub(super) fn middle(&self) -> Option<usize> {
+        let place = |i: &usize| self.lines[*i].across.abs();
+        (0..self.lines.len()).min_by(|a, b| place(a).total_cmp(&place(b)))
+    }
+
     /// Indices of the parameters that heights are multiples of, each with its greatest factor.
     pub(super) fn extents(&self) -> impl Iterator<Item = Height> + '_ {
         (0..self.parameters.len()).filter_map(|p| {

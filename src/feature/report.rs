@@ -42,6 +42,15 @@ pub struct Dimension {
     pub worst_high: f64,
 }
 
+/// Distance, in the surface, between the middle line of a feature and the curves it follows; model units.
+#[derive(Clone, Copy, PartialEq, Debug, Serialize)]
+pub struct OffCurve {
+    /// Greatest.
+    pub max: f64,
+    /// Root mean square.
+    pub rms: f64,
+}
+
 /// What one of the features reached.
 #[derive(Clone, PartialEq, Debug, Serialize)]
 pub struct FeatureReport {
@@ -51,6 +60,8 @@ pub struct FeatureReport {
     pub profile: String,
     /// Its marked edges.
     pub marks: usize,
+    /// How far it is off the curves it follows; `None` where it follows edges.
+    pub off_curve: Option<OffCurve>,
     /// Its dimensions, asked and reached.
     pub dimensions: Vec<Dimension>,
 }
@@ -229,6 +240,12 @@ impl fmt::Display for Report {
                 d.off.len(),
                 d.stations
             )?;
+        }
+        for feature in &self.features {
+            if let Some(off) = feature.off_curve {
+                let (max, rms) = (significant(off.max), significant(off.rms));
+                writeln!(f, "{}: off its curve by {max} at most, {rms} rms", feature.kind)?;
+            }
         }
         writeln!(
             f,

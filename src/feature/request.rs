@@ -1,7 +1,7 @@
 //! What a caller asks for, and why it may be refused.
 
 use super::settings::Setting;
-use super::{Length, Profile, ProfileError, SettingError, WidthError};
+use super::{Length, Profile, ProfileError, SettingError, Unit, WidthError};
 use crate::grammar::{self, RuleSet, Tracer};
 use crate::job::Cancelled;
 use crate::mark::DEFAULT_KIND;
@@ -26,6 +26,20 @@ impl Feature {
         self.profile.parameters.get(index).map_or(Length::Units(0.0), |parameter| {
             self.lengths.get(&parameter.name).copied().unwrap_or(parameter.default)
         })
+    }
+}
+
+impl Feature {
+    /// All parameters in model units, on an edge of this length and with this extent across the feature.
+    pub(super) fn values(&self, length: f64, breadth: f64) -> Vec<f64> {
+        let width = self.profile.width();
+        (0..self.profile.parameters.len())
+            .map(|p| match self.profile.parameters[p].unit {
+                Unit::Count => self.length(p).value(),
+                Unit::Length if Some(p) == width => self.length(p).on_edge(breadth),
+                Unit::Length => self.length(p).on_edge(length),
+            })
+            .collect()
     }
 }
 
@@ -254,6 +268,20 @@ pub enum FeatureError {
         feature: String,
         /// Marked edges at which it ends; empty where it does not separate the mesh.
         ends: Vec<(u32, u32)>,
+    },
+    /// A curve that no feature can follow.
+    #[error("curve {curve}: {problem}; give points on or near the limit surface, in model units")]
+    Curve {
+        /// The curve, counted from 0 in the order of the selection.
+        curve: usize,
+        /// What is wrong with it.
+        problem: String,
+    },
+    /// An edge that curves or marks cross twice.
+    #[error("edge {},{} is crossed twice; features cross an edge once: move one of them, or refine the mesh there", edge.0, edge.1)]
+    CrossedTwice {
+        /// The edge.
+        edge: (u32, u32),
     },
     /// A width that an edge cannot take.
     #[error(transparent)]

@@ -1,10 +1,11 @@
 //! The report of a run that went through.
 
 use super::aftermath::{affected_faces, feature_edges, settle, without_texcoords};
+use super::curve::off_curve;
 use super::linear::Pass;
 use super::prepare::Run;
 use super::profile::Unit;
-use super::report::{Counts, Dimension, FeatureReport, Report, Warning};
+use super::report::{Counts, Dimension, FeatureReport, OffCurve, Report, Warning};
 use super::{FeatureError, deviation};
 use crate::job::Job;
 use crate::mesh::{Mesh, VertexId};
@@ -69,7 +70,7 @@ impl Run<'_> {
             new_valences,
             rules: pass.outcome.applications.clone(),
             leftovers,
-            features: self.features(&pass),
+            features: self.features(mesh, &pass),
             fit: pass.fit,
             corrections,
             fitted,
@@ -84,13 +85,14 @@ impl Run<'_> {
         })
     }
 
-    fn features(&self, pass: &Pass) -> Vec<FeatureReport> {
+    fn features(&self, mesh: &Mesh, pass: &Pass) -> Vec<FeatureReport> {
         self.features
             .iter()
             .enumerate()
             .map(|(index, feature)| FeatureReport {
                 kind: feature.kind.clone(),
                 profile: feature.profile.name.clone(),
+                off_curve: self.off_curve(mesh, index, pass),
                 marks: self.feature_of.iter().filter(|&&f| f == index).count(),
                 dimensions: (0..feature.profile.parameters.len())
                     .filter(|&p| feature.profile.parameters[p].unit == Unit::Length)
@@ -99,6 +101,16 @@ impl Run<'_> {
             })
             .filter(|entry| entry.marks > 0)
             .collect()
+    }
+
+    /// Distance between the middle line of a feature and the curves it follows, on the limit surface.
+    fn off_curve(&self, mesh: &Mesh, feature: usize, pass: &Pass) -> Option<OffCurve> {
+        let track_of = |mark: usize| {
+            self.track_of.get(mark).copied().flatten().filter(|_| self.feature_of[mark] == feature)
+        };
+        let middle = |feature: usize| self.features[feature].profile.middle();
+        let [max, rms] = off_curve(mesh, &pass.lines, &self.tracks, track_of, middle)?;
+        Some(OffCurve { max, rms })
     }
 
     fn dimension(&self, feature: usize, parameter: usize, pass: &Pass) -> Dimension {

@@ -48,7 +48,9 @@ impl WeltSelection {
 /// mesh: must not be NULL.
 /// selectors: one or more, separated by blanks or newlines, UTF-8: edge:A,B[@t] (crossed at t in (0, 1) from A, 0.5 unless
 /// given), ring:A,B (the edges a loop cut from AB crosses), path:A,B:C,D (shortest path of quads between two edges),
-/// cut:V,V,... (all edges that leave a set of vertices), select:FILE (JSON). Vertices are 0-based; #kind may follow.
+/// cut:V,V,... (all edges that leave a set of vertices), polyline:X,Y,Z;X,Y,Z;... and spline:X,Y,Z;... (a curve on or near the
+/// surface, model units, with ;closed at the end if it closes; which edges it crosses is found when a feature is applied),
+/// select:FILE (JSON). Vertices are 0-based; #kind may follow.
 /// length: in bytes, SIZE_MAX for a NUL-terminated text.
 /// selection: receives the handle; free it with welt_selection_free.
 ///
@@ -86,7 +88,7 @@ pub unsafe extern "C" fn welt_selection_free(selection: *mut WeltSelection) {
     unsafe { arguments::free(selection) };
 }
 
-/// Number of marked edges; 0 where selection is NULL. Since: 0.1.
+/// Number of marked edges, those of curves not counted; 0 where selection is NULL. Since: 0.1.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn welt_selection_count(selection: *const WeltSelection) -> usize {
     boundary_value(0, || {

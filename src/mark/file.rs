@@ -1,8 +1,9 @@
 //! Marks from a JSON file.
 
 use super::resolve::half_edge;
-use super::{Mark, MarkError};
+use super::{Course, Curve, Mark, MarkError};
 use crate::mesh::Mesh;
+use glam::DVec3;
 use serde::Deserialize;
 use std::io::Read;
 use std::path::Path;
@@ -13,7 +14,25 @@ const MAX_BYTES: u64 = 64 << 20;
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct File {
+    #[serde(default)]
     marks: Vec<Entry>,
+    #[serde(default)]
+    curves: Vec<CurveEntry>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct CurveEntry {
+    points: Vec<[f64; 3]>,
+    #[serde(default = "polyline")]
+    course: Course,
+    #[serde(default)]
+    closed: bool,
+    kind: Option<String>,
+}
+
+fn polyline() -> Course {
+    Course::Polyline
 }
 
 #[derive(Deserialize)]
@@ -29,8 +48,8 @@ fn middle() -> f64 {
     0.5
 }
 
-/// Reads the marks of `path`; entries without a kind get `kind`.
-pub(super) fn read(mesh: &Mesh, path: &Path, kind: &str) -> Result<Vec<Mark>, MarkError> {
+/// Reads the marks and curves of `path`; entries without a kind get `kind`.
+pub(super) fn read(mesh: &Mesh, path: &Path, kind: &str) -> Result<(Vec<Mark>, Vec<Curve>), MarkError> {
     let error = |problem: String| MarkError::File { path: path.display().to_string(), problem };
     let mut text = Vec::new();
     let read = std::fs::File::open(path).and_then(|file| file.take(MAX_BYTES + 1).read_to_end(&mut text));
@@ -43,7 +62,21 @@ pub(super) fn read(mesh: &Mesh, path: &Path, kind: &str) -> Result<Vec<Mark>, Ma
             "{e}; a mark file is {{\"marks\": [{{\"edge\": [0, 1], \"t\": 0.5, \"kind\": \"red\"}}]}}"
         ))
     })?;
-    file.marks
+    let curves = file.curves.into_iter().enumerate().map(|(i, entry)| {
+        let curve = Curve {
+            points: entry.points.into_iter().map(DVec3::from).collect(),
+            course: entry.course,
+            closed: entry.closed,
+            kind: entry.kind.unwrap_or_else(|| kind.to_owned()),
+        };
+        match curve.problem() {
+            Some(problem) => Err(error(format!("curve {i}: {problem}"))),
+            None => Ok(curve),
+        }
+    });
+    let curves = curves.collect::<Result<Vec<_>, _>>()?;
+    let marks = file
+        .marks
         .into_iter()
         .enumerate()
         .map(|(i, entry)| {
@@ -54,7 +87,9 @@ pub(super) fn read(mesh: &Mesh, path: &Path, kind: &str) -> Result<Vec<Mark>, Ma
                 )));
             }
             let half_edge = half_edge(mesh, entry.edge).map_err(|e| error(format!("mark {i}: {e}")))?;
-            Ok(Mark { half_edge, t: entry.t, kind: entry.kind.unwrap_or_else(|| kind.to_owned()) })
+            let kind = entry.kind.unwrap_or_else(|| kind.to_owned());
+            Ok(Mark { half_edge, t: entry.t, kind, breadth: None })
         })
-        .collect()
+        .collect::<Result<Vec<_>, _>>()?;
+    Ok((marks, curves))
 }

@@ -4,12 +4,14 @@
 //! [`place`] stores them as attributes on both half-edges of each edge (paper, section 6: "the designer marks the
 //! affected edges"), where the rules find them.
 
+mod curve;
 mod file;
 mod orient;
 mod path;
 mod resolve;
 mod selector;
 
+pub use curve::{Course, Curve};
 pub use orient::{Chains, orient};
 pub use resolve::{MarkError, Selection, StopReason, StripEnd};
 pub use selector::{Selector, SelectorError, Shape};
@@ -28,6 +30,9 @@ pub struct Mark {
     pub t: f64,
     /// The kind of the mark: which feature it asks for.
     pub kind: String,
+    /// Extent of the edge across the feature, model units, where a curve decides it; otherwise it follows from the
+    /// faces beside the edge.
+    pub breadth: Option<f64>,
 }
 
 /// Sets `color` and `t` on both half-edges of every mark.

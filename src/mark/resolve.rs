@@ -1,7 +1,7 @@
 //! From selectors to marks on a mesh.
 
 use super::selector::{Selector, Shape};
-use super::{Mark, file, path};
+use super::{Curve, Mark, file, path};
 use crate::mesh::{FaceId, HalfEdgeId, Mesh, VertexId};
 use rustc_hash::{FxHashMap, FxHashSet};
 use serde::Serialize;
@@ -51,6 +51,8 @@ pub struct Selection {
     pub marks: Vec<Mark>,
     /// Where rings stopped before they closed, without repetition.
     pub ends: Vec<StripEnd>,
+    /// Curves that features are to follow; which edges they cross is found when a feature is applied.
+    pub curves: Vec<Curve>,
 }
 
 /// A selector that does not fit the mesh.
@@ -134,6 +136,7 @@ impl Selection {
                     Some(&index) => same_mark(mesh, &selection.marks[index], &mark)?,
                 }
             }
+            selection.curves.append(&mut found.curves);
             selection.ends.extend(found.ends.into_iter().filter(|&end| ends.insert(end)));
         }
         Ok(selection)
@@ -156,7 +159,9 @@ fn same_mark(mesh: &Mesh, first: &Mark, second: &Mark) -> Result<(), MarkError> 
 
 impl Selector {
     fn collect(&self, mesh: &Mesh, found: &mut Selection) -> Result<(), MarkError> {
-        let mut mark = |half_edge, t| found.marks.push(Mark { half_edge, t, kind: self.kind.clone() });
+        let mut mark = |half_edge, t| {
+            found.marks.push(Mark { half_edge, t, kind: self.kind.clone(), breadth: None });
+        };
         match &self.shape {
             Shape::Edge { edge, t } => mark(half_edge(mesh, *edge)?, *t),
             Shape::Ring { edge } => {
@@ -186,7 +191,15 @@ impl Selector {
                 }
                 leaving.into_iter().for_each(|h| mark(h, 0.5));
             }
-            Shape::File(path) => found.marks.extend(file::read(mesh, path, &self.kind)?),
+            Shape::File(path) => {
+                let (marks, curves) = file::read(mesh, path, &self.kind)?;
+                found.marks.extend(marks);
+                found.curves.extend(curves);
+            }
+            Shape::Curve { points, course, closed } => {
+                let (points, kind) = (points.clone(), self.kind.clone());
+                found.curves.push(Curve { points, course: *course, closed: *closed, kind });
+            }
         }
         Ok(())
     }

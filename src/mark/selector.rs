@@ -1,6 +1,8 @@
 //! Selectors as text: `ring:12,13`, `edge:4,5@0.3#piped`.
 
 use super::DEFAULT_KIND;
+use super::curve::{self, Course, Curve};
+use glam::DVec3;
 use std::path::PathBuf;
 
 /// Which edges to mark.
@@ -30,8 +32,19 @@ pub enum Shape {
         /// The vertices inside.
         vertices: Vec<u32>,
     },
-    /// `select:FILE`: marks from a JSON file, `{"marks": [{"edge": [A, B], "t": 0.5, "kind": "red"}, ...]}`, where
-    /// `t` and `kind` may be left out.
+    /// `polyline:X,Y,Z;X,Y,Z;...` or `spline:...`, with `;closed` at the end if wanted: a curve on or near the surface,
+    /// which the feature follows whatever the edges do.
+    Curve {
+        /// Points it goes through.
+        points: Vec<DVec3>,
+        /// How it runs between them.
+        course: Course,
+        /// Whether it closes.
+        closed: bool,
+    },
+    /// `select:FILE`: marks and curves from a JSON file, `{"marks": [{"edge": [A, B], "t": 0.5, "kind": "red"}, ...],
+    /// "curves": [{"points": [[X, Y, Z], ...], "course": "polyline" or "spline", "closed": false, "kind": "red"}]}`;
+    /// what is not needed may be left out.
     File(PathBuf),
 }
 
@@ -55,7 +68,7 @@ pub struct SelectorError {
     pub problem: String,
 }
 
-const FORMS: &str = "a mark is edge:A,B[@t], ring:A,B, path:A,B:C,D, cut:V,V,... or select:FILE, with #kind at the end if wanted";
+const FORMS: &str = "a mark is edge:A,B[@t], ring:A,B, path:A,B:C,D, cut:V,V,..., polyline:X,Y,Z;..., spline:X,Y,Z;... or select:FILE, with #kind at the end if wanted";
 
 impl Selector {
     /// Reads a selector. Vertex numbers are 0-based.
@@ -88,6 +101,15 @@ fn parse(text: &str) -> Result<Selector, String> {
             Shape::Path { from: pair(from)?, to: pair(to)? }
         }
         "cut" => Shape::Cut { vertices: rest.split(',').map(vertex).collect::<Result<_, _>>()? },
+        "polyline" | "spline" => {
+            let (points, closed) = curve::parse(rest)?;
+            let course = if name == "spline" { Course::Spline } else { Course::Polyline };
+            let curve = Curve { points, course, closed, kind: kind.to_owned() };
+            match curve.problem() {
+                Some(problem) => return Err(problem),
+                None => Shape::Curve { points: curve.points, course, closed },
+            }
+        }
         "select" if rest.is_empty() => return Err("a file name is missing after 'select:'".into()),
         "select" => Shape::File(rest.into()),
         _ => return Err(format!("there is no selector '{name}'; {FORMS}")),

@@ -1,0 +1,170 @@
+//! From a curve to marks.
+
+use super::track::{Beside, Track};
+use crate::feature::FeatureError;
+use crate::mark::{Curve, Mark};
+use crate::mesh::{FaceId, Mesh, VertexId};
+use crate::subdivision::limit_position;
+use crate::surface::LimitSurface;
+use glam::DVec3;
+use rustc_hash::{FxHashMap, FxHashSet};
+
+/// A vertex moves by at most this fraction of its shortest edge.
+const LONGEST_MOVE: f64 = 0.4;
+/// Two vertices of an edge look at one stretch of the curve if their feet are this many edge lengths apart at most.
+const SAME_STRETCH: f64 = 3.0;
+
+/// What a curve asks for.
+pub(in super::super) struct Traced {
+    /// The crossed edges.
+    pub(in super::super) marks: Vec<Mark>,
+    /// Vertices that lie in the way of the band, and where they go.
+    pub(in super::super) moved: Vec<(VertexId, DVec3)>,
+    pub(in super::super) track: Track,
+}
+
+/// Finds the edges that a curve crosses. `room` gives the distance that vertices are to keep from it, for a
+/// typical edge.
+///
+/// # Errors
+/// [`FeatureError::Curve`] when the curve does not lie along the surface, or crosses no edge.
+pub(in super::super) fn trace(
+    mesh: &Mesh,
+    curve: &Curve,
+    index: usize,
+    room: impl Fn(f64) -> f64,
+) -> Result<Traced, FeatureError> {
+    let error = |problem: &str| FeatureError::Curve { curve: index, problem: problem.into() };
+    let faces = near(mesh, curve);
+    let edge = mean_edge(mesh, &faces).ok_or_else(|| error("it is far from the surface"))?;
+    let surface = LimitSurface::around(mesh, &faces);
+    let (track, feet) =
+        Track::project(&surface, curve, edge).ok_or_else(|| error("it does not lie along the surface"))?;
+
+    let mut crossed: Vec<FaceId> = feet.iter().map(|foot| foot.face).collect();
+    crossed.sort_unstable();
+    crossed.dedup();
+    let edge = mean_edge(mesh, &crossed).unwrap_or(edge);
+    let around = mesh.grow_faces(&mesh.grow_faces(&crossed));
+    let mut vertices: Vec<VertexId> = around.iter().flat_map(|&f| mesh.face_vertices(f)).collect();
+    vertices.sort_unstable();
+    vertices.dedup();
+
+    let mut beside: FxHashMap<VertexId, Beside> =
+        vertices.iter().filter_map(|&v| Some((v, track.beside(limit_position(mesh, v))?))).collect();
+    let moved = make_room(mesh, &vertices, &mut beside, room(edge));
+
+    let mut marks = Vec::new();
+    let mut seen: FxHashSet<u32> = FxHashSet::default();
+    for h in vertices.iter().flat_map(|&v| mesh.outgoing(v)) {
+        let (Some(a), Some(b)) = (beside.get(&mesh.source(h)), beside.get(&mesh.target(h))) else { continue };
+        // From the right of the curve to its left: all marks count in the same direction.
+        let crossed = a.distance < 0.0 && b.distance > 0.0 && a.inside && b.inside;
+        if !(crossed && seen.insert(h.edge())) {
+            continue;
+        }
+        let breadth = b.distance - a.distance;
+        if track.between(a.along, b.along) > SAME_STRETCH * breadth.max(mesh.edge_length(h)) {
+            continue;
+        }
+        let t = -a.distance / breadth;
+        marks.push(Mark { half_edge: h, t, kind: curve.kind.clone(), breadth: Some(breadth) });
+    }
+    if marks.is_empty() {
+        return Err(error("it crosses no edge"));
+    }
+    Ok(Traced { marks, moved, track })
+}
+
+/// Faces whose control points come near the curve's bounding box.
+fn near(mesh: &Mesh, curve: &Curve) -> Vec<FaceId> {
+    let (low, high) = curve
+        .points
+        .iter()
+        .fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), p| (low.min(*p), high.max(*p)));
+    mesh.faces()
+        .filter(|&f| {
+            let (a, b) = mesh
+                .face_vertices(f)
+                .map(|v| mesh.position(v))
+                .fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(a, b), p| (a.min(p), b.max(p)));
+            let margin = DVec3::splat((b - a).length());
+            (a - margin).cmple(high).all() && (b + margin).cmpge(low).all()
+        })
+        .collect()
+}
+
+fn mean_edge(mesh: &Mesh, faces: &[FaceId]) -> Option<f64> {
+    let lengths = || faces.iter().flat_map(|&f| mesh.face_half_edges(f)).map(|h| mesh.edge_length(h));
+    let count = lengths().count();
+    let mean = lengths().sum::<f64>() / count as f64;
+    (count > 0 && mean > 0.0 && mean.is_finite()).then_some(mean)
+}
+
+/// Moves vertices that lie nearer to the curve than `room` away from it, in the surface; those of the boundary along the
+/// boundary. Faces stay convex.
+fn make_room(
+    mesh: &Mesh,
+    vertices: &[VertexId],
+    beside: &mut FxHashMap<VertexId, Beside>,
+    room: f64,
+) -> Vec<(VertexId, DVec3)> {
+    let mut moved: FxHashMap<VertexId, DVec3> = FxHashMap::default();
+    let mut order = Vec::new();
+    for &v in vertices {
+        let Some(at) = beside.get_mut(&v) else { continue };
+        if !at.inside || at.distance.abs() >= room {
+            continue;
+        }
+        let away = at.left * if at.distance < 0.0 { -1.0 } else { 1.0 };
+        let wanted = room - at.distance.abs();
+        let shift = match boundary_direction(mesh, v) {
+            Some(along) => {
+                let part = along.dot(away);
+                if part.abs() < 0.1 {
+                    continue;
+                }
+                along * (wanted / part)
+            }
+            None => away * wanted,
+        };
+        let shortest = mesh.outgoing(v).map(|h| mesh.edge_length(h)).fold(f64::INFINITY, f64::min);
+        let mut factor = (LONGEST_MOVE * shortest / shift.length()).min(1.0);
+        for _ in 0..4 {
+            moved.insert(v, mesh.position(v) + shift * factor);
+            if stays_convex(mesh, v, at.normal, &moved) {
+                break;
+            }
+            factor /= 2.0;
+            moved.remove(&v);
+        }
+        if moved.contains_key(&v) {
+            at.distance += at.distance.signum() * wanted * factor;
+            order.push(v);
+        }
+    }
+    order.into_iter().filter_map(|v| Some((v, *moved.get(&v)?))).collect()
+}
+
+/// Direction of the boundary at one of its vertices.
+fn boundary_direction(mesh: &Mesh, v: VertexId) -> Option<DVec3> {
+    let out = mesh.outgoing(v).find(|&h| mesh.face(h).is_boundary())?;
+    let (next, previous) = (mesh.target(out), mesh.source(mesh.prev(out)));
+    Some((mesh.position(next) - mesh.position(previous)).normalize_or_zero())
+}
+
+/// True when the faces around a moved vertex that were convex, seen along `normal`, still are.
+fn stays_convex(mesh: &Mesh, v: VertexId, normal: DVec3, moved: &FxHashMap<VertexId, DVec3>) -> bool {
+    let after = |v: VertexId| moved.get(&v).copied().unwrap_or_else(|| mesh.position(v));
+    let before = |v: VertexId| mesh.position(v);
+    let turns = |f: FaceId, position: &dyn Fn(VertexId) -> DVec3| {
+        mesh.face_half_edges(f).all(|h| {
+            let [a, b, c] = [mesh.source(h), mesh.target(h), mesh.target(mesh.next(h))].map(position);
+            (b - a).cross(c - b).dot(normal) > 0.0
+        })
+    };
+    mesh.outgoing(v)
+        .map(|h| mesh.face(h))
+        .filter(|f| !f.is_boundary())
+        .all(|f| turns(f, &after) || !turns(f, &before))
+}
