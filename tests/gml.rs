@@ -27,8 +27,9 @@ fn run_on(mesh: &mut Mesh, text: &str) -> Result<String, String> {
         errors.iter().map(|e| format!("{} [{}]", e.message, e.word)).collect::<Vec<_>>().join("; ")
     })?;
     let mut machine = Machine::new(&strings);
-    let mut budget = Budget::new(1_000_000, None, None);
-    let mut environment = Environment { mesh, nodes: &[e.0, 7], parameters: &[0.25], budget: &mut budget };
+    let mut budget = Budget::new(1_000_000, 100_000, None, None);
+    let mut environment =
+        Environment { mesh, nodes: &[e.0, 7], parameters: &[0.25], examples: None, budget: &mut budget };
     machine.run(&program, &mut environment).map_err(|failure| match failure.fault {
         Fault::Error(message) => format!("{message} [{}]", program.word(failure.op)),
         Fault::Thrown(value) => format!("threw {value}"),
@@ -40,10 +41,11 @@ fn run_on(mesh: &mut Mesh, text: &str) -> Result<String, String> {
         .iter()
         .map(|value| match value {
             welt::gml::Value::Array(id) => {
-                let elements: Vec<String> = machine.array(*id).iter().map(|v| machine.show(v)).collect();
+                let elements: Vec<String> =
+                    machine.array(*id).iter().map(|v| machine.show(v, mesh)).collect();
                 format!("[{}]", elements.join(" "))
             }
-            value => machine.show(value),
+            value => machine.show(value, mesh),
         })
         .collect();
     Ok(shown.join(" "))
@@ -192,7 +194,7 @@ fn numbers() {
     fails("-1 sqrt", "the result is not a finite number [sqrt]");
     fails("1000 exp", "the result is not a finite number [exp]");
     fails("1 \"a\" add", "`add` cannot take the number 1 and the text \"a\" [add]");
-    fails("1 e lt", "this needs a number, but finds half-edge 7 on the stack [lt]");
+    fails("1 e lt", "this needs a number, but finds edge 0 -> 1 on the stack [lt]");
 }
 
 #[test]
@@ -266,9 +268,12 @@ fn euler_operators_and_moves() {
         run_on(&mut mesh, "e (1,0,0) moveF e vertexpos e facemidpoint").as_deref(),
         Ok("(1, 0, 1) (1.25, -0.75, 0.75)")
     );
-    fails("e e makeEF", "makeEF needs two different vertices; 7 and 7 both start at vertex 0 [makeEF]");
-    fails("e killVEFS", "killVEFS needs a shell of a single edge; half-edge 7 has neighbours [killVEFS]");
-    fails("e (0,0,0) makeEVone dup killEV vertexpos", "half-edge 24 was removed [vertexpos]");
+    fails(
+        "e e makeEF",
+        "makeEF needs two different vertices; edge 0 -> 1 and edge 0 -> 1 both start at vertex 0 [makeEF]",
+    );
+    fails("e killVEFS", "killVEFS needs a shell of a single edge; edge 0 -> 1 has neighbours [killVEFS]");
+    fails("e (0,0,0) makeEVone dup killEV vertexpos", "this half-edge was removed [vertexpos]");
 }
 
 #[test]
@@ -309,15 +314,15 @@ fn attributes_and_links() {
     gives("e /n 5 attrset e /n attrdel e /n attrhas e /n attrdel", "0");
     gives("e /span v linkset e /span linkhas e /span linkget v eq v /span linkhas", "1 1 0");
     gives("e /span v linkset e /span v linkdel e /span linkhas", "0");
-    fails("e /n attrget", "half-edge 7 has no attribute `n` [attrget]");
+    fails("e /n attrget", "edge 0 -> 1 has no attribute `n` [attrget]");
     fails(
         "e /n [ e ] attrset",
         "an attribute holds a number, a text, a vector or an array of numbers, not array of 1; use a link for a node [attrset]",
     );
-    fails("e /span linkget", "half-edge 7 has no links `span`, one is needed [linkget]");
+    fails("e /span linkget", "edge 0 -> 1 has no links `span`, one is needed [linkget]");
     fails(
         "e /span v linkset e /span e linkset e /span linkget",
-        "half-edge 7 has 2 links `span`, one is needed [linkget]",
+        "edge 0 -> 1 has 2 links `span`, one is needed [linkget]",
     );
 }
 

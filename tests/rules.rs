@@ -255,11 +255,11 @@ fn a_failing_action_names_rule_place_and_word() {
         (rule.as_str(), diagnostic.line, diagnostic.column, diagnostic.word.as_str()),
         ("Cut", 3, 12, "attrget")
     );
-    assert_eq!(place.to_string(), "e = half-edge 0, f = half-edge 2");
+    assert_eq!(place.to_string(), "e = edge 0 -> 1, f = edge 1 -> 4, near (0.5, 0, 0)");
     assert_eq!(
         error.to_string(),
-        "rule Cut failed at e = half-edge 0, f = half-edge 2\n\
-         error: half-edge 0 has no attribute `none`\n \
+        "rule Cut failed at e = edge 0 -> 1, f = edge 1 -> 4, near (0.5, 0, 0)\n\
+         error: edge 0 -> 1 has no attribute `none`\n \
          --> test.rules:3:12\n  \
          |\n\
          3 |   e \"none\" attrget pop }\n  \
@@ -278,7 +278,7 @@ fn a_throw_that_nothing_catches_ends_the_run() {
     );
     assert!(
         error.to_string().contains(
-            "rule T failed at e = half-edge 0\nerror: the script threw \"too narrow\" and nothing caught it"
+            "rule T failed at e = edge 0 -> 1, near (0.5, 0, 0)\nerror: the script threw \"too narrow\" and nothing caught it"
         ),
         "{error}"
     );
@@ -290,16 +290,30 @@ fn runaway_rules_end_with_their_name_and_place() {
     let error =
         failed("rule Grow { e }\naction { e dup vertexCW e vertexpos makeEV pop }", &mut grid(1), limits);
     let text = error.to_string();
-    assert!(text.starts_with("the rules do not come to an end: more than 1000 applications. The last rule was Grow at e = half-edge "), "{text}");
+    assert!(text.starts_with("the rules do not come to an end: more than 1000 applications. The last rule was Grow at e = edge "), "{text}");
     assert!(text.contains("--> test.rules:1:6"), "{text}");
 
     let limits = Limits { steps: 100_000, ..Limits::default() };
     let error = failed("rule Spin { e } action { { } loop }", &mut grid(1), limits);
     assert!(
-        error.to_string().contains("more than 100000 steps. The last rule was Spin at e = half-edge 0"),
+        error
+            .to_string()
+            .contains("more than 100000 steps. The last rule was Spin at e = edge 0 -> 1, near (0.5, 0, 0)"),
         "{error}"
     );
 
+    // Growth inside of one action, and by attributes.
+    let limits = Limits { edits: 50_000, ..Limits::default() };
+    for action in ["e dup vertexCW e vertexpos makeEV pop", "e /x 1 attrset"] {
+        let text = format!("rule Swell {{ e }} action {{ {{ {action} }} loop }}");
+        let error = failed(&text, &mut grid(1), limits).to_string();
+        assert!(
+            error.contains("more than 50000 changes of the mesh. The last rule was Swell at e = edge 0 -> 1"),
+            "{error}"
+        );
+    }
+
+    let limits = Limits { steps: 100_000, ..Limits::default() };
     // A search that does not end in practice is stopped, too.
     let error = failed(
         "rule Far { a b c d f(x) } action { }\nrule X { e } action { e /x 1 attrset }",
@@ -314,19 +328,63 @@ fn runaway_rules_end_with_their_name_and_place() {
 }
 
 #[test]
+fn places_are_told_in_the_terms_of_the_file() {
+    // The action changes the edge before it fails: the place is told as it was.
+    let mut mesh = grid(2);
+    mark(&mut mesh, 0, 1, "go", Value::Number(1.0));
+    let text =
+        "rule Cut { e(go) source> v e face> f } action { e dup vertexCW (0.25,0,0) makeEV pop 1 throw }";
+    let error = failed(text, &mut mesh, Limits::default()).to_string();
+    assert!(
+        error.starts_with("rule Cut failed at e = edge 0 -> 1, v = vertex 0, f = face 0, near (0.5, 0, 0)\n"),
+        "{error}"
+    );
+    // New elements have no number of the file: they are told by their places.
+    let text =
+        "rule Cut { e(go) } action { e \"go\" attrdel e dup vertexCW (0.25,0,0) makeEV \"far\" 1 attrset }
+        rule Stop { e(far, boundary) source> v e face> f(boundary) } action { v \"x\" attrget pop }";
+    let error = failed(text, &mut mesh, Limits::default()).to_string();
+    let place = "rule Stop failed at e = edge (0.25, 0, 0) -> 0, v = the new vertex at (0.25, 0, 0), f = the boundary along edge ";
+    assert!(error.starts_with(place), "{error}");
+    // What a rule stumbles over is told the same way.
+    for (action, message) in [
+        (
+            "e e faceCCW edgemate makeEF",
+            "makeEF needs two half-edges of the same face; edge 0 -> 1 and edge 4 -> 1 lie in different faces",
+        ),
+        (
+            "e dup vertexCW (0.25,0,0) makeEV source \"x\" attrget",
+            "the new vertex at (0.25, 0, 0) has no attribute `x`",
+        ),
+        (
+            "e 2 faceCCW e makeEF face \"x\" attrget",
+            "the part of face 0 at (0.333333, 0.666667, 0) has no attribute `x`",
+        ),
+        ("e edgemate face \"x\" attrget", "the boundary along edge 1 -> 0 has no attribute `x`"),
+        ("e killEF 1", "killEF cannot join a face with the outside of the mesh at edge 0 -> 1"),
+    ] {
+        let text = format!("rule R {{ e(go) }} action {{ {action} pop }}");
+        let error = failed(&text, &mut mesh, Limits::default()).to_string();
+        assert!(error.contains(message), "{error}");
+    }
+}
+
+#[test]
 fn a_broken_face_names_the_last_rule_that_changed_it() {
     let mut mesh = grid(2);
     mark(&mut mesh, 0, 1, "go", Value::Number(1.0));
     let text = "rule Two { e(go) } action { e \"go\" attrdel e e faceCCW makeEF pop }";
     let error = failed(text, &mut mesh, Limits::default());
     assert!(
-        error.to_string().starts_with("rule Two left a broken face: face 4 has only 2 vertices\n"),
+        error.to_string().starts_with("rule Two left a broken face near (0.5, 0, 0): the part of face 0 at (0.5, 0, 0) has only 2 vertices\n"),
         "{error}"
     );
     let text = "rule Antenna { e(go) } action { e \"go\" attrdel e (0.5,0.5,0) makeEVone pop }";
     let error = failed(text, &mut mesh, Limits::default());
     assert!(
-        error.to_string().starts_with("rule Antenna left a broken face: face 0 meets vertex 0 twice\n"),
+        error.to_string().starts_with(
+            "rule Antenna left a broken face near (0.416667, 0.416667, 0): face 0 meets vertex 0 twice\n"
+        ),
         "{error}"
     );
 }
@@ -571,7 +629,7 @@ fn mistakes_at_load() {
     refused(
         "rul A { a }",
         &[
-            "1:1 `rul` has no meaning here; expected `include` or `parameter` or `define` or `phase` or `rule` [rul]",
+            "1:1 `rul` has no meaning here; expected `define` or `example` or `include` or `input` or `parameter` or `phase` or `rule` or `straight` [rul]",
         ],
     );
     refused(
@@ -619,13 +677,21 @@ fn what_depends_on_values_is_checked_when_the_rule_runs() {
     );
 }
 
+/// The words in the first columns of the tables of the section "Scripts" are those that the machine knows.
 #[test]
-fn the_reference_names_every_word() {
+fn the_reference_lists_every_word_and_no_other() {
     let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/rules.md");
     let text = std::fs::read_to_string(path).expect("the reference is there");
-    for word in welt::gml::words().filter(|word| !"[]".contains(word)) {
-        assert!(text.contains(&format!("`{word}`")), "docs/rules.md does not mention {word}");
-    }
+    let (_, scripts) = text.split_once("\n## Scripts\n").expect("a section");
+    let (scripts, _) = scripts.split_once("\n## ").expect("a further section");
+    let cells = scripts.lines().filter_map(|line| line.strip_prefix("| `")?.split(" |").next());
+    let listed: Vec<&str> =
+        cells.flat_map(|cell| cell.split('`').step_by(2)).filter(|word| !word.is_empty()).collect();
+    let unique: std::collections::BTreeSet<&str> = listed.iter().copied().collect();
+    assert_eq!(unique.len(), listed.len(), "a word is there twice");
+    let known: std::collections::BTreeSet<&str> =
+        welt::gml::words().filter(|word| !"[]".contains(word)).collect();
+    assert_eq!(unique, known);
 }
 
 const TOKENS: &[&str] = &[
@@ -707,7 +773,7 @@ fn soup(text: &str) {
     let mut mesh = grid(2);
     mark(&mut mesh, 0, 1, "x", Value::Number(1.0));
     let before = mesh.to_polygons();
-    let limits = Limits { applications: 50, steps: 20_000, time: None };
+    let limits = Limits { applications: 50, steps: 20_000, edits: 20_000, time: None };
     let result = grammar::run(&set, &mut mesh, &RunOptions { limits, ..RunOptions::default() });
     mesh.validate().expect("a mesh");
     match result {

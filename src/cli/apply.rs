@@ -8,8 +8,9 @@ use super::output::{print, tell};
 use super::progress::watch;
 use std::io::Write;
 use std::process::ExitCode;
+use std::sync::Arc;
 use welt::feature::{Options, ProfileError, Request, RequestError};
-use welt::grammar::RuleSet;
+use welt::grammar::{RuleSet, Trace, Tracer};
 use welt::io;
 use welt::mark::{Selection, Selector, parity};
 use welt::optimise::Method;
@@ -17,7 +18,7 @@ use welt::surface::SAMPLES;
 
 pub fn run(arguments: &Apply) -> Result<ExitCode, Failure> {
     let request = request(arguments)?;
-    let options = options(arguments);
+    let options = options(arguments)?;
     let selectors: Vec<Selector> = arguments
         .marks
         .iter()
@@ -29,7 +30,13 @@ pub fn run(arguments: &Apply) -> Result<ExitCode, Failure> {
     let mut mesh = files::import(&arguments.input, &arguments.import)?;
     let before = arguments.figure.as_ref().map(|_| mesh.clone());
     let selection = Selection::resolve(&mesh, &selectors)?;
-    let report = watch(|job| welt::feature::apply(&mut mesh, &selection, &request, &options, job))?;
+    let result = watch(|job| welt::feature::apply(&mut mesh, &selection, &request, &options, job));
+    // Of an attempt that failed, the trace shows how it came to that.
+    if let (Some(path), Some(tracer)) = (&arguments.trace, &options.tracer) {
+        let lines = tracer.trace().to_lines()?;
+        io::save(path, |out| out.write_all(lines.as_bytes()))?;
+    }
+    let report = result?;
 
     files::export(&arguments.output, &mesh)?;
     if let Some(path) = &arguments.report {
@@ -66,7 +73,19 @@ fn check_outputs(arguments: &Apply) -> Result<(), Failure> {
         )));
     }
     files::check_mesh_output(&arguments.output)?;
-    [report, figure].into_iter().flatten().try_for_each(files::check_output)
+    let trace = arguments.trace.as_deref();
+    [report, figure, trace].into_iter().flatten().try_for_each(files::check_output)
+}
+
+fn tracer(arguments: &Apply) -> Result<Option<Arc<Tracer>>, Failure> {
+    let Some(path) = &arguments.replay else {
+        return Ok(arguments.trace.as_ref().map(|_| Arc::new(Tracer::record())));
+    };
+    let text =
+        std::fs::read_to_string(path).map_err(|e| Failure::error(format_args!("{}: {e}", path.display())))?;
+    let trace = Trace::from_lines(&text)
+        .map_err(|(line, problem)| Failure::error(format_args!("{}:{line}: {problem}", path.display())))?;
+    Ok(Some(Arc::new(Tracer::replay(trace))))
 }
 
 fn request(arguments: &Apply) -> Result<Request, Failure> {
@@ -80,8 +99,8 @@ fn request(arguments: &Apply) -> Result<Request, Failure> {
     })
 }
 
-fn options(arguments: &Apply) -> Options {
-    Options {
+fn options(arguments: &Apply) -> Result<Options, Failure> {
+    Ok(Options {
         method: match arguments.optimise {
             FitMethod::None => Method::None,
             FitMethod::Loop => Method::Loop,
@@ -97,5 +116,6 @@ fn options(arguments: &Apply) -> Options {
         strict: arguments.strict,
         samples: if arguments.no_deviation { 0 } else { SAMPLES },
         threads: arguments.threads,
-    }
+        tracer: tracer(arguments)?,
+    })
 }

@@ -24,7 +24,7 @@ pub enum Command {
     Deviation(Deviation),
     /// Tell where extraordinary vertices sit, how much curvature varies round them, and which faces are worst
     Quality(Quality),
-    /// Check or list rule files
+    /// Check, test or list rule files
     Rules(Rules),
     /// Make example features on chairs: control meshes, limit surfaces, reports, figures
     Demo(Demo),
@@ -147,6 +147,12 @@ pub struct Apply {
     /// Threads for measuring deviations; 0 for as many as the machine has
     #[arg(long, value_name = "N", default_value_t = 1)]
     pub threads: usize,
+    /// Write which rule was applied where, in order, as JSON lines
+    #[arg(long, value_name = "FILE", conflicts_with = "replay")]
+    pub trace: Option<PathBuf>,
+    /// Apply the rules as a trace says instead of looking for matches; stop where that does not give the same mesh
+    #[arg(long, value_name = "FILE")]
+    pub replay: Option<PathBuf>,
     /// Print the report as JSON instead of text
     #[arg(long)]
     pub json: bool,
@@ -212,9 +218,26 @@ pub struct Rules {
 
 #[derive(Subcommand)]
 pub enum RulesAction {
-    /// Check rule files; exit code 1 when one has an error
+    /// Check rule files; exit code 1 when one has an error, 3 when there are warnings only
     Check {
         /// Rule files
+        #[arg(required = true)]
+        files: Vec<PathBuf>,
+        /// Print errors and warnings as JSON
+        #[arg(long)]
+        json: bool,
+    },
+    /// Draw every rule: left what its pattern matches, right what its action makes of it
+    Draw {
+        /// A rule file
+        file: PathBuf,
+        /// Folder for the drawings, one SVG per rule; it is made if missing
+        #[arg(short, long, value_name = "DIR")]
+        output: PathBuf,
+    },
+    /// Run before/after cases of rules; exit code 1 when one does not pass
+    Test {
+        /// Case files
         #[arg(required = true)]
         files: Vec<PathBuf>,
     },

@@ -9,24 +9,99 @@ use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use welt::feature::Profile;
-use welt::grammar::{Parameter, RuleSet};
+use welt::gml::{Diagnostic, Severity};
+use welt::grammar::{Case, Input, Parameter, RuleSet};
+use welt::picture::rule_svg;
 
 pub fn run(arguments: &Rules) -> Result<ExitCode, Failure> {
     match &arguments.action {
-        RulesAction::Check { files } => check(files),
+        RulesAction::Check { files, json } => check(files, *json),
+        RulesAction::Draw { file, output } => draw(file, output),
+        RulesAction::Test { files } => test(files),
         RulesAction::List { file, json } => list(file.as_deref(), *json),
     }
 }
 
-fn check(files: &[PathBuf]) -> Result<ExitCode, Failure> {
-    let mut code = ExitCode::SUCCESS;
+/// What `check` tells about a place in a rule file.
+#[derive(Serialize)]
+struct Finding<'a> {
+    severity: &'static str,
+    file: &'a str,
+    line: usize,
+    column: usize,
+    word: &'a str,
+    message: &'a str,
+}
+
+impl<'a> From<&'a Diagnostic> for Finding<'a> {
+    fn from(diagnostic: &'a Diagnostic) -> Self {
+        let severity = match diagnostic.severity {
+            Severity::Error => "error",
+            Severity::Warning => "warning",
+        };
+        let Diagnostic { file, line, column, word, message, .. } = diagnostic;
+        Self { severity, file, line: *line, column: *column, word, message }
+    }
+}
+
+fn check(files: &[PathBuf], json: bool) -> Result<ExitCode, Failure> {
+    let mut found: Vec<Diagnostic> = Vec::new();
     for path in files {
         match RuleSet::load(path) {
             Ok(rules) => {
-                print(|out| writeln!(out, "{}: {} rules, no errors", path.display(), rules.rules().len()))?
+                let warnings = rules.warnings();
+                if !json {
+                    let count = match warnings.len() {
+                        0 => "no errors, no warnings".to_owned(),
+                        1 => "1 warning".to_owned(),
+                        count => format!("{count} warnings"),
+                    };
+                    print(|out| writeln!(out, "{}: {} rules, {count}", path.display(), rules.rules().len()))?;
+                    warnings.iter().for_each(tell);
+                }
+                found.extend(warnings);
             }
             Err(error) => {
-                tell(error);
+                if !json {
+                    tell(&error);
+                }
+                found.extend(error.diagnostics);
+            }
+        }
+    }
+    if json {
+        print_json(&found.iter().map(Finding::from).collect::<Vec<_>>())?;
+    }
+    let code = if found.iter().any(|found| found.severity == Severity::Error) {
+        1
+    } else if found.is_empty() {
+        0
+    } else {
+        3
+    };
+    Ok(ExitCode::from(code))
+}
+
+/// One SVG per rule.
+fn draw(file: &Path, folder: &Path) -> Result<ExitCode, Failure> {
+    let rules = RuleSet::load(file)?;
+    std::fs::create_dir_all(folder).map_err(|e| Failure::error(format_args!("{}: {e}", folder.display())))?;
+    for rule in rules.rules() {
+        let path = folder.join(format!("{}.svg", rule.name));
+        let svg = rule_svg(&rules, rule);
+        welt::io::save(&path, |out| out.write_all(svg.as_bytes()))?;
+        print(|out| writeln!(out, "{}", path.display()))?;
+    }
+    Ok(ExitCode::SUCCESS)
+}
+
+fn test(files: &[PathBuf]) -> Result<ExitCode, Failure> {
+    let mut code = ExitCode::SUCCESS;
+    for path in files {
+        match Case::load(path).and_then(|case| case.check()) {
+            Ok(()) => print(|out| writeln!(out, "{}: passed", path.display()))?,
+            Err(error) => {
+                tell(format_args!("{}: {error}", path.display()));
                 code = ExitCode::FAILURE;
             }
         }
@@ -39,6 +114,7 @@ fn check(files: &[PathBuf]) -> Result<ExitCode, Failure> {
 struct Listing<'a> {
     name: &'a str,
     parameters: &'a [Parameter],
+    inputs: &'a [Input],
     rules: Vec<&'a str>,
 }
 
@@ -49,6 +125,7 @@ fn list(file: Option<&Path>, json: bool) -> Result<ExitCode, Failure> {
             let listing = Listing {
                 name: rules.name(),
                 parameters: rules.parameters(),
+                inputs: rules.inputs(),
                 rules: rules.rules().iter().map(|rule| rule.name.as_str()).collect(),
             };
             if json { print_json(&listing)? } else { print(|out| write_rules(out, &listing))? }
@@ -70,6 +147,9 @@ fn write_rules(out: &mut impl Write, listing: &Listing) -> io::Result<()> {
     writeln!(out, "{}", listing.name)?;
     for p in listing.parameters {
         writeln!(out, "    {} = {} {}, {} to {}: {}", p.name, p.default, p.unit, p.low, p.high, p.help)?;
+    }
+    for input in listing.inputs {
+        writeln!(out, "    input {}: {}", input.name, input.help)?;
     }
     for rule in &listing.rules {
         writeln!(out, "    rule {rule}")?;

@@ -185,6 +185,7 @@ impl Run<'_> {
         let run_options = grammar::RunOptions {
             parameters: self.request.numbers.clone(),
             job: Some(job),
+            tracer: self.options.tracer.as_deref(),
             ..grammar::RunOptions::default()
         };
         let outcome = grammar::run(&self.request.rules, mesh, &run_options)?;

@@ -2,11 +2,12 @@
 
 use super::settings::Setting;
 use super::{Leftover, Length, Profile, ProfileError, SettingError, Unit, WidthError};
-use crate::grammar::{self, RuleSet};
+use crate::grammar::{self, RuleSet, Tracer};
 use crate::job::Cancelled;
 use crate::mark::{DEFAULT_KIND, parity};
 use crate::optimise::Method;
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
 /// A feature and what it is set to.
 #[derive(Clone, Debug)]
@@ -232,11 +233,20 @@ pub struct Options {
     pub samples: usize,
     /// Threads for measuring deviations, 0 for all; the result does not depend on it.
     pub threads: usize,
+    /// Records where rules are applied, or says where to apply them.
+    pub tracer: Option<Arc<Tracer>>,
 }
 
 impl Default for Options {
     fn default() -> Self {
-        Self { method: Method::Solve, parity: parity::Mode::default(), strict: false, samples: 0, threads: 1 }
+        Self {
+            method: Method::Solve,
+            parity: parity::Mode::default(),
+            strict: false,
+            samples: 0,
+            threads: 1,
+            tracer: None,
+        }
     }
 }
 

@@ -206,9 +206,9 @@ impl From<RunError> for Failure {
     fn from(error: RunError) -> Self {
         let message = error.to_string();
         match error {
-            RunError::UnknownParameter { .. } | RunError::ParameterOutOfRange { .. } => {
-                Self::argument(message)
-            }
+            RunError::UnknownParameter { .. }
+            | RunError::ParameterOutOfRange { .. }
+            | RunError::Replay { .. } => Self::argument(message),
             RunError::Cancelled(cancelled) => cancelled.into(),
             RunError::Script { diagnostic, .. }
             | RunError::Runaway { diagnostic, .. }

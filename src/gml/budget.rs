@@ -11,27 +11,30 @@ const SLICE: u64 = 1 << 14;
 pub enum Stop {
     /// All steps were used.
     Steps,
+    /// All changes of the mesh were used.
+    Edits,
     /// The time was used.
     Time,
     /// The caller cancelled.
     Cancelled,
 }
 
-/// Steps that scripts and searches may still take. One step is one operation of a script, one element copied by it,
+/// What scripts and searches may still do. One step is one operation of a script, one element copied by it,
 /// or one step of a search for matches.
 #[derive(Debug)]
 pub struct Budget<'a> {
     /// Steps until the clock is looked at.
     slice: u64,
     left: u64,
+    edits: u64,
     deadline: Option<Instant>,
     job: Option<&'a Job>,
 }
 
 impl<'a> Budget<'a> {
-    /// `steps` steps, until `deadline`, as long as `job` is not cancelled.
-    pub fn new(steps: u64, deadline: Option<Instant>, job: Option<&'a Job>) -> Self {
-        Self { slice: 0, left: steps, deadline, job }
+    /// `steps` steps and `edits` changes of the mesh, until `deadline`, as long as `job` is not cancelled.
+    pub fn new(steps: u64, edits: u64, deadline: Option<Instant>, job: Option<&'a Job>) -> Self {
+        Self { slice: 0, left: steps, edits, deadline, job }
     }
 
     /// Takes one step.
@@ -53,6 +56,15 @@ impl<'a> Budget<'a> {
             self.refill()?;
         }
         self.slice -= count;
+        Ok(())
+    }
+
+    /// Takes `count` changes of the mesh.
+    ///
+    /// # Errors
+    /// They are used up.
+    pub(crate) fn edit(&mut self, count: u64) -> Result<(), Stop> {
+        self.edits = self.edits.checked_sub(count).ok_or(Stop::Edits)?;
         Ok(())
     }
 

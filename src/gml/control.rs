@@ -231,6 +231,6 @@ impl Execution<'_, '_, '_> {
             self.push(value)?;
             return self.call(handler);
         }
-        Err(Fault::Thrown(self.machine.show(&value)))
+        Err(Fault::Thrown(self.show(&value)))
     }
 }

@@ -136,6 +136,9 @@ impl Execution<'_, '_, '_> {
             W::MoveV => self.move_vertex(),
             W::MoveE => self.move_edge(),
             W::MoveF => self.move_face(),
+            W::SharpE => self.sharp_edge(),
+            W::SharpF => self.sharp_face(),
+            W::SharpV => self.sharp_vertex(),
             W::SetSharpness => self.set_sharpness(),
 
             W::AttrGet => self.attribute_get(),

@@ -6,11 +6,16 @@ use super::value::Value;
 use crate::mesh::{Corner, EulerError, HalfEdgeId, Mesh, Node, VertexId};
 use glam::DVec3;
 
+/// Sharpness from which on an edge or a vertex is infinitely sharp (OpenSubdiv's scale).
+const INFINITE: f32 = 10.0;
+
 impl Execution<'_, '_, '_> {
     pub(super) fn make_vefs(&mut self) -> Result<(), Fault> {
         let p1 = self.pop_vec3()?;
         let p0 = self.pop_vec3()?;
-        let e = self.environment.mesh.make_vefs(p0, p1)?;
+        self.environment.budget.edit(4)?;
+        let made = self.environment.mesh.make_vefs(p0, p1);
+        let e = self.euler(made)?;
         self.push_half_edge(e)
     }
 
@@ -18,21 +23,27 @@ impl Execution<'_, '_, '_> {
         let p = self.pop_vec3()?;
         let e1 = self.pop_half_edge()?;
         let e0 = self.pop_half_edge()?;
-        let n = self.environment.mesh.make_ev(e0, e1, p)?;
+        self.environment.budget.edit(2)?;
+        let made = self.environment.mesh.make_ev(e0, e1, p);
+        let n = self.euler(made)?;
         self.push_half_edge(n)
     }
 
     pub(super) fn make_ev_one(&mut self) -> Result<(), Fault> {
         let p = self.pop_vec3()?;
         let e = self.pop_half_edge()?;
-        let n = self.environment.mesh.make_ev_one(e, p)?;
+        self.environment.budget.edit(2)?;
+        let made = self.environment.mesh.make_ev_one(e, p);
+        let n = self.euler(made)?;
         self.push_half_edge(n)
     }
 
     pub(super) fn make_ef(&mut self) -> Result<(), Fault> {
         let e1 = self.pop_half_edge()?;
         let e0 = self.pop_half_edge()?;
-        let n = self.environment.mesh.make_ef(e0, e1)?;
+        self.environment.budget.edit(2)?;
+        let made = self.environment.mesh.make_ef(e0, e1);
+        let n = self.euler(made)?;
         self.push_half_edge(n)
     }
 
@@ -73,13 +84,16 @@ impl Execution<'_, '_, '_> {
         kill: fn(&mut Mesh, HalfEdgeId) -> Result<(), EulerError>,
     ) -> Result<(), Fault> {
         let e = self.pop_half_edge()?;
-        Ok(kill(self.environment.mesh, e)?)
+        self.environment.budget.edit(2)?;
+        let killed = kill(self.environment.mesh, e);
+        self.euler(killed)
     }
 
     fn place_vertex(&mut self, v: VertexId, p: DVec3) -> Result<(), Fault> {
         if !p.is_finite() {
-            return Err(EulerError::NotFinite.into());
+            return self.euler(Err(EulerError::NotFinite));
         }
+        self.environment.budget.edit(1)?;
         self.environment.mesh.set_position(v, p);
         Ok(())
     }
@@ -116,6 +130,40 @@ impl Execution<'_, '_, '_> {
         vertices.into_iter().try_for_each(|v| self.shift_vertex(v, shift))
     }
 
+    /// A truth value as a sharpness: 0 smooth, else infinitely sharp.
+    fn pop_flag(&mut self) -> Result<f32, Fault> {
+        Ok(if self.pop_number()? == 0.0 { 0.0 } else { INFINITE })
+    }
+
+    /// `e 1 sharpE`: a crease; `e 0 sharpE`: none.
+    pub(super) fn sharp_edge(&mut self) -> Result<(), Fault> {
+        let sharpness = self.pop_flag()?;
+        let h = self.pop_half_edge()?;
+        self.environment.budget.edit(1)?;
+        self.environment.mesh.set_edge_sharpness(h, sharpness);
+        Ok(())
+    }
+
+    /// `f 1 sharpF`: all edges of the face.
+    pub(super) fn sharp_face(&mut self) -> Result<(), Fault> {
+        let sharpness = self.pop_flag()?;
+        let f = self.pop_side()?;
+        let edges: Vec<HalfEdgeId> = self.environment.mesh.face_half_edges(f).collect();
+        self.environment.budget.spend_many(edges.len() as u64)?;
+        self.environment.budget.edit(edges.len() as u64)?;
+        edges.into_iter().for_each(|h| self.environment.mesh.set_edge_sharpness(h, sharpness));
+        Ok(())
+    }
+
+    /// `v 1 sharpV`: a corner.
+    pub(super) fn sharp_vertex(&mut self) -> Result<(), Fault> {
+        let sharpness = self.pop_flag()?;
+        let v = self.pop_place()?;
+        self.environment.budget.edit(1)?;
+        self.environment.mesh.set_vertex_sharpness(v, sharpness);
+        Ok(())
+    }
+
     /// `e s setsharpness`: of the edge of a half-edge, or of a vertex itself.
     pub(super) fn set_sharpness(&mut self) -> Result<(), Fault> {
         let sharpness = self.pop_number()?;
@@ -124,6 +172,7 @@ impl Execution<'_, '_, '_> {
                 "a sharpness of {sharpness} is out of range; it is 0 (smooth) or more"
             )));
         }
+        self.environment.budget.edit(1)?;
         match self.pop_node()? {
             Node::HalfEdge(h) => self.environment.mesh.set_edge_sharpness(h, sharpness as f32),
             Node::Vertex(v) => self.environment.mesh.set_vertex_sharpness(v, sharpness as f32),

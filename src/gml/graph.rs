@@ -1,6 +1,6 @@
 //! Words of attributes and links.
 
-use super::machine::{Execution, Fault, error, show_node};
+use super::machine::{Execution, Fault, error};
 use super::program::StringId;
 use super::value::Value;
 use crate::mesh::{Node, Symbol, Value as Attribute};
@@ -32,11 +32,13 @@ impl Execution<'_, '_, '_> {
         let node = self.pop_node()?;
         let symbol = self.symbol(key);
         let machine = &mut *self.machine;
-        let found = symbol.and_then(|symbol| self.environment.mesh.attribute(node, symbol));
-        let value = match found {
+        let mesh = &*self.environment.mesh;
+        let set = symbol.and_then(|symbol| mesh.attribute(node, symbol));
+        let example = || self.environment.examples?.get(&*machine.strings.get(key));
+        let value = match set.or_else(example) {
             None => {
                 let name = machine.strings.get(key);
-                return Err(error(format!("{} has no attribute `{name}`", show_node(node))));
+                return Err(error(format!("{} has no attribute `{name}`", mesh.describe(node))));
             }
             Some(Attribute::Number(x)) => Value::Number(*x),
             Some(Attribute::Vector(v)) => Value::Vec3(*v),
@@ -76,13 +78,14 @@ impl Execution<'_, '_, '_> {
             }
             other => return Err(self.unfit(other)),
         };
+        self.environment.budget.edit(1)?;
         let symbol = self.intern(key);
         self.environment.mesh.set_attribute(node, symbol, Some(stored));
         Ok(())
     }
 
     fn unfit(&self, value: Value) -> Fault {
-        let found = self.machine.show(&value);
+        let found = self.show(&value);
         error(format!(
             "an attribute holds a number, a text, a vector or an array of numbers, not {found}; use a link for a node"
         ))
@@ -94,6 +97,7 @@ impl Execution<'_, '_, '_> {
         if let Some(symbol) = self.symbol(key)
             && self.environment.mesh.attribute(node, symbol).is_some()
         {
+            self.environment.budget.edit(1)?;
             self.environment.mesh.set_attribute(node, symbol, None);
         }
         Ok(())
@@ -108,6 +112,7 @@ impl Execution<'_, '_, '_> {
 
     pub(super) fn link_set(&mut self) -> Result<(), Fault> {
         let (from, label, to) = self.pop_link()?;
+        self.environment.budget.edit(1)?;
         let symbol = self.intern(label);
         self.environment.mesh.set_link(from, symbol, to, true);
         Ok(())
@@ -115,6 +120,7 @@ impl Execution<'_, '_, '_> {
 
     pub(super) fn link_delete(&mut self) -> Result<(), Fault> {
         let (from, label, to) = self.pop_link()?;
+        self.environment.budget.edit(1)?;
         if let Some(symbol) = self.symbol(label) {
             self.environment.mesh.set_link(from, symbol, to, false);
         }
@@ -130,7 +136,10 @@ impl Execution<'_, '_, '_> {
         let &[to] = targets else {
             let name = self.machine.strings.get(label);
             let count = if targets.is_empty() { "no".to_owned() } else { targets.len().to_string() };
-            return Err(error(format!("{} has {count} links `{name}`, one is needed", show_node(from))));
+            return Err(error(format!(
+                "{} has {count} links `{name}`, one is needed",
+                self.environment.mesh.describe(from)
+            )));
         };
         self.push(Value::Node(to))
     }

@@ -49,6 +49,10 @@ impl Kinds {
         Self(self.0 | other.0)
     }
 
+    pub(crate) const fn and(self, other: Self) -> Self {
+        Self(self.0 & other.0)
+    }
+
     /// True when a value may be of both sets.
     pub(crate) fn meets(self, other: Self) -> bool {
         self.0 & other.0 != 0

@@ -97,6 +97,11 @@ impl Cursor {
         enough
     }
 
+    /// Goes to byte `offset`, which lies on a character border.
+    pub fn go_to(&mut self, offset: u32) {
+        self.at = offset as usize;
+    }
+
     /// Goes to the end of the text.
     pub fn give_up_at_once(&mut self) {
         self.at = self.source.text.len();

@@ -6,6 +6,7 @@ use super::kind::Kinds;
 use super::program::{Op, Program, StringId, Strings};
 use super::value::{Heap, HeapFull, Value};
 use crate::mesh::{Checkpoint, EulerError, Mesh, Node, Symbol};
+use std::collections::BTreeMap;
 
 /// Procedures and loops that may be open at once.
 const DEEPEST: usize = 1000;
@@ -30,12 +31,6 @@ pub struct Failure {
     pub fault: Fault,
     /// Index of the operation in the program.
     pub op: usize,
-}
-
-impl From<EulerError> for Fault {
-    fn from(error: EulerError) -> Self {
-        Self::Error(error.to_string())
-    }
 }
 
 impl From<HeapFull> for Fault {
@@ -132,6 +127,8 @@ pub struct Environment<'a, 'job> {
     pub nodes: &'a [u32],
     /// Values of the parameters, in the order of [`Scope::parameters`](super::Scope).
     pub parameters: &'a [f64],
+    /// Values of attributes that are read where they are missing.
+    pub examples: Option<&'a BTreeMap<String, crate::mesh::Value>>,
     /// What may still be done.
     pub budget: &'a mut Budget<'job>,
 }
@@ -178,8 +175,8 @@ impl Machine {
         self.heap.array(id)
     }
 
-    /// A value as a message shows it.
-    pub fn show(&self, value: &Value) -> String {
+    /// A value as a message about `mesh` shows it.
+    pub fn show(&self, value: &Value, mesh: &Mesh) -> String {
         match value {
             Value::Number(x) => x.to_string(),
             Value::Text(id) => format!("\"{}\"", self.strings.get(*id)),
@@ -187,19 +184,9 @@ impl Machine {
             Value::Vec2(v) => format!("({}, {})", v.x, v.y),
             Value::Vec3(v) => format!("({}, {}, {})", v.x, v.y, v.z),
             Value::Array(id) => format!("array of {}", self.heap.array(*id).len()),
-            Value::Node(node) => show_node(*node),
+            Value::Node(node) => mesh.describe(*node),
             Value::Dict(_) | Value::Procedure(_) | Value::Mark => value.kind().to_owned(),
         }
-    }
-}
-
-/// A node as a message shows it.
-pub fn show_node(node: Node) -> String {
-    match node {
-        Node::Vertex(v) => format!("vertex {}", v.0),
-        Node::HalfEdge(h) => format!("half-edge {}", h.0),
-        Node::Face(f) if f.is_boundary() => format!("boundary loop {}", f.index()),
-        Node::Face(f) => format!("face {}", f.0),
     }
 }
 
@@ -361,9 +348,19 @@ impl Execution<'_, '_, '_> {
         stack.len().checked_sub(depth + 1).map(|at| stack[at]).ok_or_else(underflow)
     }
 
+    /// A value as a message shows it.
+    pub(super) fn show(&self, value: &Value) -> String {
+        self.machine.show(value, self.environment.mesh)
+    }
+
+    /// What an Euler operator gave, its error in the user's terms.
+    pub(super) fn euler<T>(&self, result: Result<T, EulerError>) -> Result<T, Fault> {
+        result.map_err(|refused| error(refused.message(|node| self.environment.mesh.describe(node))))
+    }
+
     /// A value with its kind, for messages.
     pub(super) fn describe(&self, value: &Value) -> String {
-        let shown = self.machine.show(value);
+        let shown = self.show(value);
         match value {
             Value::Number(_) | Value::Text(_) | Value::Name(_) | Value::Vec2(_) | Value::Vec3(_) => {
                 format!("the {} {shown}", value.kind())

@@ -25,14 +25,16 @@ mod word;
 
 pub use budget::{Budget, Stop};
 pub use compile::{Scope, compile};
-pub use machine::{Environment, Failure, Fault, Machine, show_node};
+pub use machine::{Environment, Failure, Fault, Machine};
 pub use program::{Program, StringId, Strings};
-pub use source::{Diagnostic, Source, Span};
+pub use source::{Diagnostic, Severity, Source, Span};
 pub use value::Value;
 
-pub(crate) use check::{Leaves, check};
+pub(crate) use check::{Effects, Leaves, check};
 pub(crate) use compile::{Definition, compile_tokens, is_word};
 pub(crate) use lex::{Cursor, script};
+pub(crate) use program::Op;
+pub(crate) use word::Word;
 
 /// Names of the words of the language, in the order of the reference.
 pub fn words() -> impl Iterator<Item = &'static str> {

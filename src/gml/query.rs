@@ -1,7 +1,7 @@
 //! Words that look at the mesh.
 
 use super::kind::Kinds;
-use super::machine::{Execution, Fault, error, show_node};
+use super::machine::{Execution, Fault, error};
 use super::value::Value;
 use crate::mesh::{FaceId, HalfEdgeId, Mesh, Node, VertexId};
 use glam::DVec3;
@@ -11,7 +11,7 @@ impl Execution<'_, '_, '_> {
     pub(super) fn pop_node(&mut self) -> Result<Node, Fault> {
         match self.pop()? {
             Value::Node(node) if self.environment.mesh.has_node(node) => Ok(node),
-            Value::Node(node) => Err(error(format!("{} was removed", show_node(node)))),
+            Value::Node(node) => Err(error(format!("this {} was removed", Value::Node(node).kind()))),
             other => Err(self.mismatch(Kinds::NODE, other)),
         }
     }
@@ -68,7 +68,9 @@ impl Execution<'_, '_, '_> {
         let mesh = &self.environment.mesh;
         let direction = mesh.position(mesh.target(h)) - mesh.position(mesh.source(h));
         let unit = direction.try_normalize();
-        self.push_vec3(unit.ok_or_else(|| error(format!("half-edge {} has length zero", h.0)))?)
+        self.push_vec3(
+            unit.ok_or_else(|| error(format!("{} has length zero", mesh.describe(Node::HalfEdge(h)))))?,
+        )
     }
 
     /// Half-edges of a face; each is a step of the budget.
@@ -97,7 +99,7 @@ impl Execution<'_, '_, '_> {
             .map(|[a, b]| a.cross(b))
             .sum();
         let unit = area.try_normalize();
-        self.push_vec3(unit.ok_or_else(|| error(format!("face {} has no area", f.0)))?)
+        self.push_vec3(unit.ok_or_else(|| error(format!("{} has no area", mesh.describe(Node::Face(f)))))?)
     }
 
     pub(super) fn face_midpoint(&mut self) -> Result<(), Fault> {
@@ -121,7 +123,9 @@ impl Execution<'_, '_, '_> {
             .map(|[a, b]| a.cross(b))
             .sum();
         let unit = sum.try_normalize();
-        self.push_vec3(unit.ok_or_else(|| error(format!("vertex {} has no normal", v.0)))?)
+        self.push_vec3(
+            unit.ok_or_else(|| error(format!("{} has no normal", mesh.describe(Node::Vertex(v)))))?,
+        )
     }
 
     pub(super) fn face_degree(&mut self) -> Result<(), Fault> {

@@ -5,7 +5,7 @@ use std::fmt;
 use std::sync::Arc;
 
 /// A text that scripts or rules were read from.
-#[derive(PartialEq, Eq)]
+#[derive(PartialEq, Eq, Default)]
 pub struct Source {
     /// Name shown in messages: a path, or the name of a built-in file.
     pub name: String,
@@ -32,9 +32,20 @@ pub struct Span {
     pub end: u32,
 }
 
+/// How bad something is.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum Severity {
+    /// The text cannot be used.
+    Error,
+    /// The text can be used, but is probably not what was meant.
+    Warning,
+}
+
 /// A mistake in a script or a rule file, with its place. [`Display`](fmt::Display) shows the line and a caret.
 #[derive(Clone, PartialEq, Eq, Debug)]
 pub struct Diagnostic {
+    /// How bad it is.
+    pub severity: Severity,
     /// What is wrong, and what to do about it.
     pub message: String,
     /// Name of the file.
@@ -67,6 +78,7 @@ impl Diagnostic {
         let before = source.text.get(..span.start as usize).unwrap_or(&source.text);
         let line_start = before.rfind('\n').map_or(0, |at| at + 1);
         Self {
+            severity: Severity::Error,
             message: message.into(),
             file: source.name.clone(),
             line: before.matches('\n').count() + 1,
@@ -75,6 +87,11 @@ impl Diagnostic {
             source: Arc::clone(source),
             span,
         }
+    }
+
+    /// The same, as a warning.
+    pub(crate) fn into_warning(self) -> Self {
+        Self { severity: Severity::Warning, ..self }
     }
 
     /// Sort key that puts messages of one file in the order of the text.
@@ -89,7 +106,11 @@ impl fmt::Display for Diagnostic {
         let snippet = Snippet::source(self.source.text.as_str())
             .path(self.file.as_str())
             .annotation(AnnotationKind::Primary.span(span));
-        let report = [Level::ERROR.primary_title(self.message.as_str()).element(snippet)];
+        let level = match self.severity {
+            Severity::Error => Level::ERROR,
+            Severity::Warning => Level::WARNING,
+        };
+        let report = [level.primary_title(self.message.as_str()).element(snippet)];
         f.write_str(&Renderer::plain().render(&report))
     }
 }

@@ -202,6 +202,9 @@ words! {
     MoveV "moveV" [PLACE, VEC3] => gives(&[]), true;
     MoveE "moveE" [HE, VEC3] => gives(&[]), true;
     MoveF "moveF" [SIDE, VEC3] => gives(&[]), true;
+    SharpE "sharpE" [HE, NUM] => gives(&[]), true;
+    SharpF "sharpF" [SIDE, NUM] => gives(&[]), true;
+    SharpV "sharpV" [PLACE, NUM] => gives(&[]), true;
     SetSharpness "setsharpness" [PLACE, NUM] => gives(&[]), true;
     // Attributes and links
     AttrGet "attrget" [NODE, KEY] => gives(&[ANY]), false;

@@ -1,8 +1,9 @@
 //! What can go wrong with rule files and with their runs.
 
-use crate::gml::{Diagnostic, show_node};
+use crate::gml::Diagnostic;
 use crate::job::Cancelled;
-use crate::mesh::Node;
+use crate::mesh::{Mesh, Node, show_point};
+use glam::DVec3;
 use std::fmt;
 
 /// Mistakes in a rule file and the files it includes, in the order of the texts.
@@ -29,17 +30,33 @@ impl fmt::Display for RulesError {
 
 impl std::error::Error for RulesError {}
 
-/// Where a rule was applied: the name of each node of its pattern, and the element.
-#[derive(Clone, PartialEq, Eq, Default, Debug)]
-pub struct Place(pub Vec<(String, Node)>);
+/// Where a rule was applied.
+#[derive(Clone, PartialEq, Debug)]
+pub struct Place {
+    /// The name of each node of the pattern, the element, and the element in words ([`Mesh::describe`]).
+    pub nodes: Vec<(String, Node, String)>,
+    /// A point to look at.
+    pub position: DVec3,
+}
+
+impl Place {
+    pub(super) fn new<'a>(mesh: &Mesh, nodes: impl Iterator<Item = (&'a str, Node)>) -> Self {
+        let nodes: Vec<_> = nodes.map(|(name, node)| (name.to_owned(), node, mesh.describe(node))).collect();
+        let position = nodes.first().map_or(DVec3::ZERO, |(_, node, _)| mesh.place(*node));
+        Self { nodes, position }
+    }
+}
 
 impl fmt::Display for Place {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        for (i, (name, node)) in self.0.iter().enumerate() {
-            let comma = if i == 0 { "" } else { ", " };
-            write!(f, "{comma}{name} = {}", show_node(*node))?;
+        const SHOWN: usize = 8;
+        for (name, _, element) in self.nodes.iter().take(SHOWN) {
+            write!(f, "{name} = {element}, ")?;
         }
-        Ok(())
+        if self.nodes.len() > SHOWN {
+            write!(f, "{} more, ", self.nodes.len() - SHOWN)?;
+        }
+        write!(f, "near {}", show_point(self.position))
     }
 }
 
@@ -89,14 +106,22 @@ pub enum RunError {
         diagnostic: Box<Diagnostic>,
     },
     /// The rules left a face that no control mesh can have.
-    #[error("rule {rule} left a broken face: {problem}\n{diagnostic}")]
+    #[error("rule {rule} left a broken face near {}: {problem}\n{diagnostic}", show_point(*.position))]
     BrokenFace {
         /// The last rule that changed the face.
         rule: String,
         /// What is wrong with the face.
         problem: String,
+        /// The mean of the face's vertices.
+        position: DVec3,
         /// The rule's place in its file.
         diagnostic: Box<Diagnostic>,
+    },
+    /// The rules do not do what a trace says.
+    #[error("the trace cannot be played: {problem}")]
+    Replay {
+        /// What differs, and where.
+        problem: String,
     },
     /// The caller cancelled.
     #[error(transparent)]

@@ -5,15 +5,24 @@
 //! starts its search at the most selective attribute of its pattern, through an index, and after an application only
 //! what can see the change is examined again: cost follows the marks, not the mesh. `docs/rules.md` is the reference.
 
+mod case;
 mod error;
+mod layout;
+mod lint;
 mod parse;
 mod pattern;
 mod plan;
 mod queue;
+mod replay;
 mod ruleset;
 mod run;
+mod sample;
 mod search;
+mod trace;
 
+pub use case::{Case, CaseError};
 pub use error::{Place, RulesError, RunError};
-pub use ruleset::{Loader, Parameter, Rule, RuleSet};
+pub use ruleset::{Input, Loader, Parameter, Rule, RuleSet};
 pub use run::{Limits, Outcome, RunOptions, run};
+pub use sample::Sample;
+pub use trace::{Application, Pass, Trace, Tracer, digest};

@@ -3,12 +3,13 @@
 use super::error::RulesError;
 use super::pattern::{Pattern, infer_kinds};
 use super::plan::{Graph, NodePlan, Step, edges, number_tests};
-use super::ruleset::{Forbidden, Loader, Parameter, Rule, RuleSet};
+use super::ruleset::{Forbidden, Input, Loader, Parameter, Rule, RuleSet};
 use crate::gml::{
-    Cursor, Definition, Diagnostic, Leaves, Scope, Source, Span, Strings, check, compile_tokens, is_word,
-    script,
+    Cursor, Definition, Diagnostic, Effects, Leaves, Scope, Source, Span, Strings, check, compile_tokens,
+    is_word, script,
 };
-use crate::mesh::Domain;
+use crate::mesh::{Domain, Value};
+use glam::DVec3;
 use std::sync::Arc;
 
 /// Files that may include one another in a row.
@@ -20,7 +21,8 @@ const MOST_PARAMETERS: usize = 1000;
 const MOST_RULES: usize = 10_000;
 /// Definitions may use one another in a row, which takes a call each to read.
 const MOST_DEFINITIONS: usize = 300;
-const KEYWORDS: [&str; 5] = ["include", "parameter", "define", "phase", "rule"];
+const KEYWORDS: [&str; 8] =
+    ["define", "example", "include", "input", "parameter", "phase", "rule", "straight"];
 
 pub(super) fn parse(name: &str, text: &str, loader: &Loader<'_>) -> Result<RuleSet, RulesError> {
     let mut reader = Reader {
@@ -43,7 +45,7 @@ pub(super) fn parse(name: &str, text: &str, loader: &Loader<'_>) -> Result<RuleS
 }
 
 /// Runs of rules of one phase.
-fn phases(rules: &[Rule]) -> Vec<std::ops::Range<usize>> {
+pub(super) fn phases(rules: &[Rule]) -> Vec<std::ops::Range<usize>> {
     let mut start = 0;
     rules
         .chunk_by(|a, b| a.phase == b.phase)
@@ -102,6 +104,13 @@ impl Reader<'_> {
         let span = if keyword.is_empty() { cursor.span_here() } else { cursor.span_from(start) };
         match keyword.as_str() {
             "include" => self.include(cursor),
+            "example" => self.example(cursor),
+            "input" => self.input(cursor),
+            "straight" => {
+                let (name, _) = expect_name(cursor, "the name of an attribute")?;
+                self.rules.straight.insert(name);
+                Ok(())
+            }
             "parameter" => self.parameter(cursor),
             "define" => self.define(cursor),
             "phase" => {
@@ -111,7 +120,7 @@ impl Reader<'_> {
                 }
                 self.known_phases.push(name.clone());
                 self.phase = name;
-                Ok(())
+                self.again(cursor)
             }
             "rule" => self.rule(cursor),
             "" => {
@@ -122,6 +131,22 @@ impl Reader<'_> {
                 Err(cursor.error(span, format!("`{other}` has no meaning here; expected {}", keywords())))
             }
         }
+    }
+
+    /// `again NAME` after the name of a phase.
+    fn again(&mut self, cursor: &mut Cursor) -> Result<(), Diagnostic> {
+        let before = cursor.clone();
+        cursor.skip_space();
+        if cursor.name() != "again" {
+            *cursor = before;
+            return Ok(());
+        }
+        let (target, span) = expect_name(cursor, "the name of a phase")?;
+        if !self.known_phases.contains(&target) {
+            return Err(cursor.error(span, format!("no phase `{target}` was begun before")));
+        }
+        self.rules.again.insert(self.phase.clone(), target);
+        Ok(())
     }
 
     fn include(&mut self, cursor: &mut Cursor) -> Result<(), Diagnostic> {
@@ -173,12 +198,41 @@ impl Reader<'_> {
         }
         expect_keyword(cursor, "unit")?;
         let (unit, _) = expect_name(cursor, "a unit such as length, fraction, count or angle")?;
-        cursor.skip_space();
-        if cursor.peek() != Some('"') {
-            return Err(cursor.error(cursor.span_here(), "expected one line of help in quotes"));
-        }
-        let help = cursor.text()?;
+        let help = expect_help(cursor)?;
         self.rules.parameters.push(Parameter { name, default, low, high, unit, help });
+        self.rules.declared.push((Arc::clone(cursor.source()), span));
+        Ok(())
+    }
+
+    /// `example NAME VALUE`.
+    fn example(&mut self, cursor: &mut Cursor) -> Result<(), Diagnostic> {
+        let (name, span) = expect_name(cursor, "the name of an attribute")?;
+        if self.rules.examples.contains_key(&name) {
+            return Err(cursor.error(span, format!("example `{name}` is there twice")));
+        }
+        cursor.skip_space();
+        let start = cursor.offset();
+        let value = match cursor.peek() {
+            Some('"') => Value::text(&cursor.text()?),
+            Some('[') => Value::Numbers(numbers(cursor, ']')?.into()),
+            Some('(') => match *numbers(cursor, ')')? {
+                [x, y, z] => Value::Vector(DVec3::new(x, y, z)),
+                _ => return Err(cursor.error(cursor.span_from(start), "a vector is written (0.5 0.5 0)")),
+            },
+            _ => Value::Number(expect_number(cursor)?.0),
+        };
+        self.rules.examples.insert(name, value);
+        Ok(())
+    }
+
+    /// `input NAME "help"`.
+    fn input(&mut self, cursor: &mut Cursor) -> Result<(), Diagnostic> {
+        let (name, span) = expect_name(cursor, "the name of an attribute or a link")?;
+        if self.rules.inputs.iter().any(|known| known.name == name) {
+            return Err(cursor.error(span, format!("input `{name}` is declared twice")));
+        }
+        let help = expect_help(cursor)?;
+        self.rules.inputs.push(Input { name, help });
         Ok(())
     }
 
@@ -249,6 +303,7 @@ impl Reader<'_> {
         let mut reach = graph.reach(anchor_node);
         let mut forbidden = Vec::new();
         let mut conditions = Vec::new();
+        let mut effects = Effects::default();
         let parameters = self.parameter_names();
         let action = loop {
             cursor.skip_space();
@@ -299,7 +354,7 @@ impl Reader<'_> {
                     let mut joined = Graph { nodes: rest.nodes.clone(), edges: graph.edges.clone() };
                     joined.edges.extend(rest.edges.iter().copied());
                     reach.extend(joined.reach(anchor_node).into_iter().skip(nodes.len()));
-                    forbidden.push(Forbidden { plans: rest.nodes, plan });
+                    forbidden.push(Forbidden { pattern: inner, span: part_span, plans: rest.nodes, plan });
                 }
                 "where" | "action" => {
                     let brace = expect_brace(cursor, "a script")?;
@@ -320,7 +375,10 @@ impl Reader<'_> {
                     );
                     if mistakes == self.errors.len() {
                         let leaves = if part == "action" { Leaves::Nothing } else { Leaves::OneNumber };
-                        self.errors.extend(check(&program, leaves));
+                        let checked = check(&program, leaves);
+                        self.errors.extend(checked.mistake);
+                        self.rules.script_warnings.extend(checked.warnings);
+                        effects = checked.effects;
                     }
                     if part == "action" {
                         break program;
@@ -342,6 +400,7 @@ impl Reader<'_> {
             source,
             span,
             nodes,
+            pattern,
             plans: graph.nodes,
             plan,
             anchor,
@@ -350,6 +409,7 @@ impl Reader<'_> {
             looks_further: !conditions.is_empty() || seeds > 1,
             conditions,
             action,
+            effects,
             reach,
         });
         Ok(())
@@ -395,6 +455,30 @@ fn expect_keyword(cursor: &mut Cursor, keyword: &str) -> Result<(), Diagnostic> 
     let what = format!("`{keyword}`");
     let (name, span) = expect_name(cursor, &what)?;
     if name == keyword { Ok(()) } else { Err(cursor.error(span, format!("expected {what}"))) }
+}
+
+fn expect_help(cursor: &mut Cursor) -> Result<String, Diagnostic> {
+    cursor.skip_space();
+    if cursor.peek() != Some('"') {
+        return Err(cursor.error(cursor.span_here(), "expected one line of help in quotes"));
+    }
+    cursor.text()
+}
+
+/// Numbers between brackets, with or without commas.
+fn numbers(cursor: &mut Cursor, close: char) -> Result<Vec<f64>, Diagnostic> {
+    cursor.bump();
+    let mut numbers = Vec::new();
+    loop {
+        cursor.skip_space();
+        if cursor.eat(close) {
+            return Ok(numbers);
+        }
+        if !numbers.is_empty() && cursor.eat(',') {
+            cursor.skip_space();
+        }
+        numbers.push(expect_number(cursor)?.0);
+    }
 }
 
 /// A number, `inf` or `-inf`.

@@ -36,6 +36,14 @@ impl Label {
         }
     }
 
+    /// The label of a link.
+    pub(super) fn link(&self) -> Option<&str> {
+        match self {
+            Self::Link(name) => Some(name),
+            _ => None,
+        }
+    }
+
     /// Kinds of the nodes at its ends; links join any.
     fn kinds(&self) -> Option<[Domain; 2]> {
         match self {
@@ -61,6 +69,7 @@ pub(super) enum Comparison {
 #[derive(Clone, PartialEq, Debug)]
 pub(super) struct Test {
     pub(super) attribute: String,
+    pub(super) span: Span,
     /// `None`: the attribute must be there.
     pub(super) value: Option<(Comparison, Value)>,
 }
@@ -198,6 +207,7 @@ fn parse_test(cursor: &mut Cursor) -> Result<Test, Diagnostic> {
     cursor.skip_space();
     let start = cursor.offset();
     let attribute = cursor.name();
+    let span = cursor.span_from(start);
     if attribute.is_empty() {
         return Err(cursor.error(cursor.span_here(), "expected the name of an attribute"));
     }
@@ -208,7 +218,7 @@ fn parse_test(cursor: &mut Cursor) -> Result<Test, Diagnostic> {
         Some('!') => Comparison::NotEqual,
         Some('<') => Comparison::Less,
         Some('>') => Comparison::Greater,
-        _ => return Ok(Test { attribute, value: None }),
+        _ => return Ok(Test { attribute, span, value: None }),
     };
     cursor.bump();
     let comparison = match (comparison, cursor.peek() == Some('=')) {
@@ -234,7 +244,7 @@ fn parse_test(cursor: &mut Cursor) -> Result<Test, Diagnostic> {
     if value.as_text().is_some() && !matches!(comparison, Comparison::Equal | Comparison::NotEqual) {
         return Err(cursor.error(cursor.span_from(start), "a text can be compared with `=` and `!=` only"));
     }
-    Ok(Test { attribute, value: Some((comparison, value)) })
+    Ok(Test { attribute, span: cursor.span_from(start), value: Some((comparison, value)) })
 }
 
 /// Kinds of the nodes: what the labels say, else half-edges. `kinds` holds what is known already.

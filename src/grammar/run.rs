@@ -3,10 +3,11 @@
 use super::error::{Place, RunError};
 use super::plan::{Hop, Reach};
 use super::queue::Queue;
-use super::ruleset::{Rule, RuleSet};
+use super::ruleset::{Examples, Rule, RuleSet};
 use super::search::{Search, View, bind};
+use super::trace::{Application, Pass, Tracer, digest};
 use crate::fault;
-use crate::gml::{Budget, Environment, Failure, Fault, Machine, Program, Stop, Value, show_node};
+use crate::gml::{Budget, Environment, Failure, Fault, Machine, Program, Stop, Value};
 use crate::job::{Cancelled, Job};
 use crate::mesh::{Checkpoint, FaceId, Mesh, Node, Symbol};
 use std::collections::BTreeMap;
@@ -19,16 +20,27 @@ pub struct Limits {
     pub applications: u64,
     /// Steps of scripts and of the search for matches.
     pub steps: u64,
+    /// Changes that scripts make to the mesh: each element made or removed, each vertex moved, each attribute, link and
+    /// sharpness set counts. Bounds the memory, about 150 bytes each at most.
+    pub edits: u64,
     /// Time; `None` for as long as it takes. A run that ends by time is not reproducible.
     pub time: Option<Duration>,
 }
 
 impl Default for Limits {
-    /// 10 million applications, 10^9 steps, one minute.
+    /// 10 million applications, 10^9 steps, 20 million changes, one minute.
     fn default() -> Self {
-        Self { applications: 10_000_000, steps: 1_000_000_000, time: Some(Duration::from_secs(60)) }
+        Self {
+            applications: 10_000_000,
+            steps: 1_000_000_000,
+            edits: 20_000_000,
+            time: Some(Duration::from_secs(60)),
+        }
     }
 }
+
+/// Applications that a trace can hold: about 500 bytes each.
+const MOST_RECORDED: usize = 1_000_000;
 
 /// How to run rules.
 #[derive(Clone, Default, Debug)]
@@ -39,6 +51,8 @@ pub struct RunOptions<'a> {
     pub limits: Limits,
     /// Watches and cancels the run.
     pub job: Option<&'a Job>,
+    /// Records where rules are applied, or says where to apply them.
+    pub tracer: Option<&'a Tracer>,
 }
 
 /// What a run did.
@@ -60,7 +74,7 @@ pub struct Outcome {
 pub fn run(rules: &RuleSet, mesh: &mut Mesh, options: &RunOptions<'_>) -> Result<Outcome, RunError> {
     let parameters = parameters(rules, options)?;
     let checkpoint = mesh.begin();
-    let result = Run::new(rules, mesh, &parameters, options).and_then(Run::finish);
+    let result = Run::new(rules, mesh, &parameters, options).rewrite(options.tracer);
     match result {
         Ok(outcome) => {
             mesh.commit(checkpoint);
@@ -71,6 +85,25 @@ pub fn run(rules: &RuleSet, mesh: &mut Mesh, options: &RunOptions<'_>) -> Result
             Err(error)
         }
     }
+}
+
+/// Applies rule number `rule` once to the elements `nodes`, whatever its conditions say; attributes that its action
+/// misses have the values of the examples. The mesh is as it was when this fails.
+pub(super) fn apply_to(rules: &RuleSet, rule: usize, mesh: &mut Mesh, nodes: &[u32]) -> Result<(), RunError> {
+    let options = RunOptions::default();
+    let parameters = parameters(rules, &options)?;
+    let checkpoint = mesh.begin();
+    let mut run = Run::new(rules, mesh, &parameters, &options);
+    run.examples = Some(&rules.examples);
+    run.bound[..nodes.len()].copy_from_slice(nodes);
+    match run.apply_here(rule).and_then(|()| run.outcome()) {
+        Ok(_) => mesh.commit(checkpoint),
+        Err(error) => {
+            mesh.rollback(checkpoint);
+            return Err(error);
+        }
+    }
+    Ok(())
 }
 
 fn parameters(rules: &RuleSet, options: &RunOptions<'_>) -> Result<Vec<f64>, RunError> {
@@ -94,23 +127,27 @@ fn parameters(rules: &RuleSet, options: &RunOptions<'_>) -> Result<Vec<f64>, Run
         .collect()
 }
 
-struct Run<'a> {
-    rules: &'a RuleSet,
-    mesh: &'a mut Mesh,
+pub(super) struct Run<'a> {
+    pub(super) rules: &'a RuleSet,
+    pub(super) mesh: &'a mut Mesh,
     parameters: &'a [f64],
-    symbols: Vec<Symbol>,
+    /// What scripts find where an attribute is missing.
+    examples: Option<&'a Examples>,
+    pub(super) symbols: Vec<Symbol>,
     budget: Budget<'a>,
     limits: Limits,
     machine: Machine,
     search: Search,
     forbidden_search: Search,
     /// The elements of the present match.
-    bound: Vec<u32>,
+    pub(super) bound: Vec<u32>,
     queues: Vec<Queue>,
     /// Applications when each rule's queue was filled last.
     seeded_at: Vec<u64>,
     counts: Vec<u64>,
     total: u64,
+    /// What is done, when that is recorded.
+    recorded: Option<Vec<Application>>,
     /// Faces that each application changed, with its rule.
     touched: Vec<(FaceId, u32)>,
     /// The rules of the present phase.
@@ -123,12 +160,7 @@ struct Run<'a> {
 }
 
 impl<'a> Run<'a> {
-    fn new(
-        rules: &'a RuleSet,
-        mesh: &'a mut Mesh,
-        parameters: &'a [f64],
-        options: &RunOptions<'a>,
-    ) -> Result<Self, RunError> {
+    fn new(rules: &'a RuleSet, mesh: &'a mut Mesh, parameters: &'a [f64], options: &RunOptions<'a>) -> Self {
         let symbols = rules.names.iter().map(|name| mesh.intern(name)).collect();
         let deadline = options.limits.time.and_then(|time| Instant::now().checked_add(time));
         let most_nodes = rules
@@ -136,12 +168,13 @@ impl<'a> Run<'a> {
             .iter()
             .flat_map(|rule| rule.forbidden.iter().map(|f| f.plans.len()).chain([rule.plans.len()]))
             .max();
-        Ok(Self {
+        Self {
             rules,
             mesh,
             parameters,
+            examples: None,
             symbols,
-            budget: Budget::new(options.limits.steps, deadline, options.job),
+            budget: Budget::new(options.limits.steps, options.limits.edits, deadline, options.job),
             limits: options.limits,
             machine: Machine::new(&rules.strings),
             search: Search::default(),
@@ -151,24 +184,59 @@ impl<'a> Run<'a> {
             seeded_at: vec![0; rules.rules.len()],
             counts: vec![0; rules.rules.len()],
             total: 0,
+            recorded: None,
             touched: Vec::new(),
             phase: 0..0,
             changed: Vec::new(),
             faces: Vec::new(),
             near: Vec::new(),
             walk: [Vec::new(), Vec::new()],
-        })
+        }
     }
 
-    fn finish(mut self) -> Result<Outcome, RunError> {
+    /// Rewrites the mesh: by its own search, or as the tracer says.
+    fn rewrite(mut self, tracer: Option<&Tracer>) -> Result<Outcome, RunError> {
+        let Some(tracer) = tracer else {
+            self.run_phases()?;
+            return self.outcome();
+        };
+        if let Some(pass) = tracer.next_pass() {
+            self.follow(pass.as_ref())?;
+            return self.outcome();
+        }
+        let before = digest(self.mesh);
+        self.recorded = Some(Vec::new());
+        let result = self.run_phases();
+        let applications = self.recorded.take().unwrap_or_default();
+        // Of a run that failed, the trace shows how it came to that.
+        tracer.add(Pass { applications, before, after: digest(self.mesh) });
+        result?;
+        self.outcome()
+    }
+
+    fn run_phases(&mut self) -> Result<(), RunError> {
         let rules = self.rules;
-        for phase in &rules.phases {
+        let mut at = 0;
+        while let Some(phase) = rules.phases.get(at) {
+            let before = self.total;
             for rule in phase.clone() {
                 self.seed(rule);
             }
             self.phase = phase.clone();
             self.run_phase(phase.clone())?;
+            let name =
+                |phase: &std::ops::Range<usize>| rules.rules.get(phase.start).map(|rule| rule.phase.as_str());
+            let again = name(phase).and_then(|name| rules.again.get(name)).filter(|_| self.total > before);
+            let target =
+                again.and_then(|again| rules.phases.iter().position(|phase| name(phase) == Some(again)));
+            at = target.unwrap_or(at + 1);
         }
+        Ok(())
+    }
+
+    /// What was done, after a look at the faces that were changed.
+    fn outcome(self) -> Result<Outcome, RunError> {
+        let rules = self.rules;
         let mut faces: Vec<FaceId> = self.touched.iter().map(|(face, _)| *face).collect();
         faces.sort_unstable();
         faces.dedup();
@@ -228,24 +296,32 @@ impl<'a> Run<'a> {
             match self.find(rule, anchor) {
                 Ok(false) => {}
                 Ok(true) => {
-                    self.apply(number, anchor)?;
+                    self.apply_here(number)?;
+                    // The same anchor may have another match.
+                    self.queues[number].push(anchor);
                     return Ok(true);
                 }
-                Err(Failed::Stopped(stop)) => return Err(self.stopped(stop, rule)),
-                Err(Failed::Script(condition, failure)) => {
-                    return Err(self.script_error(rule, &rule.conditions[condition], &failure));
-                }
-                Err(Failed::NotOneNumber(condition)) => {
-                    let program = &rule.conditions[condition];
-                    let failure = Failure {
-                        fault: Fault::Error("a condition must leave one number, and nothing else".to_owned()),
-                        op: program.last_op(),
-                    };
-                    return Err(self.script_error(rule, program, &failure));
-                }
+                Err(failed) => return Err(self.failed(rule, failed)),
             }
         }
         Ok(false)
+    }
+
+    pub(super) fn failed(&self, rule: &Rule, failed: Failed) -> RunError {
+        match failed {
+            Failed::Stopped(stop) => self.stopped(stop, rule),
+            Failed::Script(condition, failure) => {
+                self.script_error(rule, &rule.conditions[condition], &failure)
+            }
+            Failed::NotOneNumber(condition) => {
+                let program = &rule.conditions[condition];
+                let failure = Failure {
+                    fault: Fault::Error("a condition must leave one number, and nothing else".to_owned()),
+                    op: program.last_op(),
+                };
+                self.script_error(rule, program, &failure)
+            }
+        }
     }
 
     /// Looks for a match with its anchor at `id`; the match is in `bound`.
@@ -260,13 +336,18 @@ impl<'a> Run<'a> {
         let mut found =
             self.search.start(view, &rule.plan, &rule.plans, 1, &mut self.bound, &mut self.budget)?;
         while found {
-            if !self.is_forbidden(rule)? && self.conditions_hold(rule)? {
+            if self.stands(rule)? {
                 return Ok(true);
             }
             let view = View { mesh: self.mesh, symbols: &self.symbols };
             found = self.search.resume(view, &rule.plan, &rule.plans, &mut self.bound, &mut self.budget)?;
         }
         Ok(false)
+    }
+
+    /// No `not` excludes the match in `bound`, and the conditions hold.
+    pub(super) fn stands(&mut self, rule: &Rule) -> Result<bool, Failed> {
+        Ok(!self.is_forbidden(rule)? && self.conditions_hold(rule)?)
     }
 
     fn is_forbidden(&mut self, rule: &Rule) -> Result<bool, Failed> {
@@ -286,6 +367,7 @@ impl<'a> Run<'a> {
                 mesh: self.mesh,
                 nodes: &self.bound,
                 parameters: self.parameters,
+                examples: self.examples,
                 budget: &mut self.budget,
             };
             self.machine.run(condition, &mut environment).map_err(|failure| Failed::Script(i, failure))?;
@@ -302,34 +384,44 @@ impl<'a> Run<'a> {
     }
 
     /// Runs the action of a rule on the match in `bound`.
-    fn apply(&mut self, number: usize, anchor: u32) -> Result<(), RunError> {
+    pub(super) fn apply_here(&mut self, number: usize) -> Result<(), RunError> {
         let rule = &self.rules.rules[number];
         if self.total >= self.limits.applications {
             let limit = format!("more than {} applications", self.limits.applications);
             return Err(self.runaway(limit, rule));
+        }
+        if let Some(recorded) = &self.recorded {
+            if recorded.len() >= MOST_RECORDED {
+                let limit = format!("more than {MOST_RECORDED} applications, which no trace can hold");
+                return Err(self.runaway(limit, rule));
+            }
+            let application = Application::new(&rule.name, &self.place(rule));
+            self.recorded.get_or_insert_default().push(application);
         }
         let before = self.mesh.log_position();
         let mut environment = Environment {
             mesh: self.mesh,
             nodes: &self.bound,
             parameters: self.parameters,
+            examples: self.examples,
             budget: &mut self.budget,
         };
-        if let Err(failure) = self.machine.run(&rule.action, &mut environment) {
-            return Err(self.script_error(rule, &rule.action, &failure));
-        }
-        if !self.machine.stack().is_empty() {
+        let failure = self.machine.run(&rule.action, &mut environment).err().or_else(|| {
             let left: Vec<String> =
-                self.machine.stack().iter().map(|value| self.machine.show(value)).collect();
-            let message = format!("the action must leave the stack empty, but leaves {}", left.join(" "));
-            let failure = Failure { fault: Fault::Error(message), op: rule.action.last_op() };
+                self.machine.stack().iter().map(|value| self.machine.show(value, self.mesh)).collect();
+            (!left.is_empty()).then(|| {
+                let message = format!("the action must leave the stack empty, but leaves {}", left.join(" "));
+                Failure { fault: Fault::Error(message), op: rule.action.last_op() }
+            })
+        });
+        if let Some(failure) = failure {
+            // The place is told as it was when the rule was applied.
+            self.mesh.rollback(before);
             return Err(self.script_error(rule, &rule.action, &failure));
         }
         self.counts[number] += 1;
         self.total += 1;
         fault::point("rules");
-        // The same anchor may have another match.
-        self.queues[number].push(anchor);
         self.after(number, before);
         Ok(())
     }
@@ -376,9 +468,9 @@ impl<'a> Run<'a> {
         }
     }
 
-    fn place(&self, rule: &Rule, bound: &[u32]) -> Place {
-        let nodes = rule.nodes.iter().zip(bound);
-        Place(nodes.map(|((name, domain), &id)| (name.clone(), Node::new(*domain, id))).collect())
+    fn place(&self, rule: &Rule) -> Place {
+        let nodes = rule.nodes.iter().zip(&self.bound);
+        Place::new(self.mesh, nodes.map(|((name, domain), &id)| (name.as_str(), Node::new(*domain, id))))
     }
 
     fn script_error(&self, rule: &Rule, program: &Program, failure: &Failure) -> RunError {
@@ -389,7 +481,7 @@ impl<'a> Run<'a> {
         };
         RunError::Script {
             rule: rule.name.clone(),
-            place: self.place(rule, &self.bound),
+            place: self.place(rule),
             diagnostic: Box::new(program.error(failure.op, message)),
         }
     }
@@ -398,6 +490,7 @@ impl<'a> Run<'a> {
         match stop {
             Stop::Cancelled => RunError::Cancelled(Cancelled),
             Stop::Steps => self.runaway(format!("more than {} steps", self.limits.steps), rule),
+            Stop::Edits => self.runaway(format!("more than {} changes of the mesh", self.limits.edits), rule),
             Stop::Time => {
                 let time = self.limits.time.unwrap_or_default();
                 self.runaway(format!("more than {} s", time.as_secs_f64()), rule)
@@ -410,15 +503,22 @@ impl<'a> Run<'a> {
             diagnostic: rule.diagnostic(&format!("{limit}, here in rule {}", rule.name)),
             limit,
             rule: rule.name.clone(),
-            place: self.place(rule, &self.bound),
+            place: self.place(rule),
         }
     }
 
     fn broken(&self, face: FaceId, problem: String) -> RunError {
         let last = self.touched.iter().rev().find(|(touched, _)| *touched == face);
         let rule = &self.rules.rules[last.map_or(0, |(_, rule)| *rule as usize)];
-        let message = format!("rule {} was the last to change {}", rule.name, show_node(Node::Face(face)));
-        RunError::BrokenFace { rule: rule.name.clone(), problem, diagnostic: rule.diagnostic(&message) }
+        let message =
+            format!("rule {} was the last to change {}", rule.name, self.mesh.describe(Node::Face(face)));
+        let position = self.mesh.place(Node::Face(face));
+        RunError::BrokenFace {
+            rule: rule.name.clone(),
+            problem,
+            position,
+            diagnostic: rule.diagnostic(&message),
+        }
     }
 }
 
@@ -447,7 +547,7 @@ fn anchors(view: View<'_>, node: Node, reach: &Reach, lists: &mut [Vec<u32>; 2],
 }
 
 /// Why a search for a match ended early.
-enum Failed {
+pub(super) enum Failed {
     Stopped(Stop),
     Script(usize, Failure),
     NotOneNumber(usize),

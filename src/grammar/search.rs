@@ -93,6 +93,13 @@ impl View<'_> {
         }
     }
 
+    /// True when `hop` leads from one node to the other.
+    pub(super) fn leads(&self, from: Node, hop: Hop, to: Node) -> bool {
+        let mut found = Vec::new();
+        self.neighbours(from, hop, to.domain(), &mut found);
+        found.contains(&to.id())
+    }
+
     fn lies_on_boundary(&self, node: Node) -> bool {
         match node {
             Node::HalfEdge(h) => self.mesh.face(h).is_boundary(),
@@ -151,7 +158,7 @@ impl View<'_> {
 }
 
 /// A value of another type than the wanted one is neither less nor greater; it is not equal.
-fn compare(found: &Value, comparison: Comparison, wanted: &Value) -> bool {
+pub(super) fn compare(found: &Value, comparison: Comparison, wanted: &Value) -> bool {
     match comparison {
         Comparison::Equal => found == wanted,
         Comparison::NotEqual => found != wanted,

@@ -64,6 +64,7 @@ impl Mesh {
         let mut mesh = Self {
             half_edges: edges.half_edges,
             positions: polygons.positions.clone(),
+            first_new_vertex: vertices.len() as u32,
             first_new_face: faces.len() as u32,
             vertices,
             faces,

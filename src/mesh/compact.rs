@@ -82,8 +82,7 @@ impl Mesh {
     pub fn compact(&mut self) -> Renumbering {
         debug_assert!(self.log.depth == 0, "compact inside a transaction");
         if self.is_compact() {
-            self.first_new_face = self.faces.len() as u32;
-            self.face_parents.clear();
+            self.forget_history();
             return Renumbering::default();
         }
         let map = Renumbering {
@@ -110,8 +109,7 @@ impl Mesh {
                 *h = if *h == NONE { NONE } else { half_edge(*h) };
             }
         }
-        self.first_new_face = self.faces.len() as u32;
-        self.face_parents.clear();
+        self.forget_history();
         self.holes = 0;
         self.attributes.remap(|node| map.node(node));
         let edges = std::mem::take(&mut self.edge_sharpness);
@@ -120,6 +118,13 @@ impl Mesh {
         self.vertex_sharpness = vertices.into_iter().map(|(v, s)| (map.vertices[v as usize], s)).collect();
         self.hole_faces = self.hole_faces.iter().map(|&f| map.faces[f as usize]).collect();
         map
+    }
+
+    /// From here on what is there counts as there from the start.
+    fn forget_history(&mut self) {
+        self.first_new_vertex = self.vertices.len() as u32;
+        self.first_new_face = self.faces.len() as u32;
+        self.face_parents.clear();
     }
 
     /// The mesh as polygons, removed elements left out.

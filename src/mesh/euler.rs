@@ -9,47 +9,102 @@ use super::ids::{DEAD, FaceId, HalfEdgeId, NONE, Node, VertexId};
 use super::log::Change;
 use super::{HalfEdge, Mesh};
 use glam::DVec3;
+use std::fmt;
 
 /// Why an Euler operator refused. The mesh is as it was.
-#[derive(Clone, Copy, PartialEq, Eq, Debug, thiserror::Error)]
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub enum EulerError {
     /// The half-edge was removed or never existed.
-    #[error("half-edge {} does not exist", .0.0)]
     NoSuchHalfEdge(HalfEdgeId),
     /// `makeEV` needs two half-edges out of one vertex.
-    #[error("makeEV needs two half-edges out of the same vertex; {} leaves vertex {} and {} leaves vertex {}", .0.0, .1.0, .2.0, .3.0)]
     DifferentVertices(HalfEdgeId, VertexId, HalfEdgeId, VertexId),
     /// `makeEF` needs two half-edges of one face.
-    #[error("makeEF needs two half-edges of the same face; {} and {} lie in different faces", .0.0, .1.0)]
     DifferentFaces(HalfEdgeId, HalfEdgeId),
     /// `makeEF` would make an edge from a vertex to itself.
-    #[error("makeEF needs two different vertices; {} and {} both start at vertex {}", .0.0, .1.0, .2.0)]
     LoopEdge(HalfEdgeId, HalfEdgeId, VertexId),
     /// The new edge would have the outside of the mesh on both sides.
-    #[error("an edge needs a face; at half-edge {} both sides of the new edge would be outside of the mesh", .0.0)]
     Outside(HalfEdgeId),
     /// `killEF` needs two different faces.
-    #[error("killEF needs an edge between two faces; both sides of half-edge {} lie in the same face", .0.0)]
     SameFace(HalfEdgeId),
     /// `killEF` would join a face with the outside.
-    #[error("killEF cannot join a face with the outside of the mesh at half-edge {}", .0.0)]
     BoundaryFace(HalfEdgeId),
     /// `killEV` would remove the last edge of a shell.
-    #[error("killEV cannot remove half-edge {}, the only edge of its shell; use killVEFS", .0.0)]
     LastEdge(HalfEdgeId),
     /// `killEV` would make an edge from a vertex to itself.
-    #[error("killEV cannot collapse half-edge {}: another edge joins its two vertices", .0.0)]
     WouldLoop(HalfEdgeId),
     /// `killVEFS` needs a shell of one edge.
-    #[error("killVEFS needs a shell of a single edge; half-edge {} has neighbours", .0.0)]
     NotSingleEdge(HalfEdgeId),
     /// A position that is not a finite point.
-    #[error("a vertex needs finite coordinates")]
     NotFinite,
     /// The mesh is full.
-    #[error("the mesh has no ids left for new elements")]
     Full,
 }
+
+impl EulerError {
+    /// The message, with elements called as `name` calls them.
+    pub fn message(self, name: impl Fn(Node) -> String) -> String {
+        let edge = |h: HalfEdgeId| name(Node::HalfEdge(h));
+        let vertex = |v: VertexId| name(Node::Vertex(v));
+        match self {
+            Self::NoSuchHalfEdge(h) => format!("{} does not exist", edge(h)),
+            Self::DifferentVertices(a, v, b, w) => format!(
+                "makeEV needs two half-edges out of the same vertex; {} leaves {} and {} leaves {}",
+                edge(a),
+                vertex(v),
+                edge(b),
+                vertex(w)
+            ),
+            Self::DifferentFaces(a, b) => format!(
+                "makeEF needs two half-edges of the same face; {} and {} lie in different faces",
+                edge(a),
+                edge(b)
+            ),
+            Self::LoopEdge(a, b, v) => format!(
+                "makeEF needs two different vertices; {} and {} both start at {}",
+                edge(a),
+                edge(b),
+                vertex(v)
+            ),
+            Self::Outside(h) => format!(
+                "an edge needs a face; at {} both sides of the new edge would be outside of the mesh",
+                edge(h)
+            ),
+            Self::SameFace(h) => {
+                format!(
+                    "killEF needs an edge between two faces; both sides of {} lie in the same face",
+                    edge(h)
+                )
+            }
+            Self::BoundaryFace(h) => {
+                format!("killEF cannot join a face with the outside of the mesh at {}", edge(h))
+            }
+            Self::LastEdge(h) => {
+                format!("killEV cannot remove {}, the only edge of its shell; use killVEFS", edge(h))
+            }
+            Self::WouldLoop(h) => {
+                format!("killEV cannot collapse {}: another edge joins its two vertices", edge(h))
+            }
+            Self::NotSingleEdge(h) => {
+                format!("killVEFS needs a shell of a single edge; {} has neighbours", edge(h))
+            }
+            Self::NotFinite => "a vertex needs finite coordinates".to_owned(),
+            Self::Full => "the mesh has no ids left for new elements".to_owned(),
+        }
+    }
+}
+
+/// Elements by their ids.
+impl fmt::Display for EulerError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.message(|node| match node {
+            Node::Vertex(v) => format!("vertex {}", v.0),
+            Node::HalfEdge(h) => format!("half-edge {}", h.0),
+            Node::Face(face) => format!("face {}", face.index()),
+        }))
+    }
+}
+
+impl std::error::Error for EulerError {}
 
 impl Mesh {
     /// A new shell of one edge and one face; the result runs `p1` -> `p0`.

@@ -10,6 +10,7 @@ mod attributes;
 mod build;
 mod compact;
 mod defect;
+mod describe;
 mod euler;
 mod ids;
 mod log;
@@ -24,6 +25,7 @@ mod walk;
 pub use attributes::Symbol;
 pub use compact::Renumbering;
 pub use defect::{Defect, Defects};
+pub use describe::show_point;
 pub use euler::EulerError;
 pub use ids::{Domain, FaceId, HalfEdgeId, Node, VertexId};
 pub use log::Checkpoint;
@@ -64,6 +66,8 @@ pub struct Mesh {
     faces: Vec<u32>,
     /// One half-edge per boundary loop, `DEAD` for a removed one.
     loops: Vec<u32>,
+    /// Vertices from this id on were made since the mesh was built or compacted.
+    first_new_vertex: u32,
     /// Faces from this id on were split off from others; the ones below were there from the start.
     first_new_face: u32,
     /// The face each face from `first_new_face` on was split off from.
@@ -268,6 +272,12 @@ impl Mesh {
     /// Nodes to which `from` is linked by `label`.
     pub fn links(&self, from: Node, label: Symbol) -> &[Node] {
         self.attributes.links(from, label)
+    }
+
+    /// All links that start at `from`, as label and target.
+    pub fn links_from(&self, from: Node) -> Vec<(Symbol, Node)> {
+        let links = self.attributes.links_of(from).into_iter();
+        links.filter(|link| link.0 == from).map(|(_, label, to)| (label, to)).collect()
     }
 
     /// Nodes that are linked to `to` by `label`.

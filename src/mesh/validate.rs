@@ -1,7 +1,7 @@
 //! Checks that the tables describe a mesh.
 
 use super::Mesh;
-use super::ids::{DEAD, FaceId, HalfEdgeId, NONE, VertexId};
+use super::ids::{DEAD, FaceId, HalfEdgeId, NONE, Node, VertexId};
 
 /// A broken invariant, in words, with the ids it concerns.
 #[derive(Clone, PartialEq, Eq, Debug, thiserror::Error)]
@@ -46,10 +46,16 @@ impl Mesh {
     /// The face has fewer than three vertices, or one of them twice.
     pub fn validate_control_face(&self, f: FaceId) -> Result<(), Violation> {
         let mut vertices: smallvec::SmallVec<[VertexId; 8]> = self.face_vertices(f).collect();
-        require!(vertices.len() >= 3, "face {} has only {} vertices", f.0, vertices.len());
+        require!(
+            vertices.len() >= 3,
+            "{} has only {} vertices",
+            self.describe(Node::Face(f)),
+            vertices.len()
+        );
         vertices.sort_unstable();
         if let Some(twice) = vertices.windows(2).find(|pair| pair[0] == pair[1]) {
-            return Err(Violation(format!("face {} meets vertex {} twice", f.0, twice[0].0)));
+            let [face, vertex] = [Node::Face(f), Node::Vertex(twice[0])].map(|node| self.describe(node));
+            return Err(Violation(format!("{face} meets {vertex} twice")));
         }
         Ok(())
     }
