@@ -1,5 +1,7 @@
 //! The before/after cases of the rules in `rules/`, and what is said about cases that are wrong.
 
+mod common;
+
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 use welt::grammar::{Case, RuleSet};
@@ -35,7 +37,7 @@ fn every_case_passes_and_every_rule_has_one() {
         }
     }
     assert!(failures.is_empty(), "\n{}\n", failures.join("\n\n"));
-    for path in entries(&root().join("rules")) {
+    for path in common::rule_sets() {
         let set = path.file_stem().expect("a name").to_string_lossy().into_owned();
         let rules = RuleSet::load(&path).expect("rules");
         let shown = shown.remove(&set).unwrap_or_default();

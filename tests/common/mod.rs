@@ -49,3 +49,20 @@ pub fn clean_cages(data: &std::path::Path, folder: &str) -> Vec<(String, welt::m
         })
         .collect()
 }
+
+/// The rule files of the project that are sets of their own, not parts that another file includes.
+#[allow(dead_code, reason = "not every test that shares this module reads rules")]
+pub fn rule_sets() -> Vec<PathBuf> {
+    let mut files: Vec<(PathBuf, String)> =
+        std::fs::read_dir(PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("rules"))
+            .expect("the rules")
+            .map(|entry| entry.expect("an entry").path())
+            .map(|path| (path.clone(), std::fs::read_to_string(path).expect("text")))
+            .collect();
+    files.sort();
+    let is_part = |path: &PathBuf| {
+        let name = path.file_name().map(|name| format!("include \"{}\"", name.to_string_lossy()));
+        name.is_some_and(|name| files.iter().any(|(_, text)| text.contains(&name)))
+    };
+    files.iter().map(|(path, _)| path.clone()).filter(|path| !is_part(path)).collect()
+}
