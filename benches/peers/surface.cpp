@@ -25,7 +25,7 @@ using WeltSurface = std::unique_ptr<welt_surface, SurfaceDeleter>;
 
 WeltSurface freeze(const WeltMesh& mesh) {
     welt_surface* surface = nullptr;
-    check(welt_surface_create(mesh.get(), nullptr, 0, &surface, nullptr));
+    check(welt_surface_create(mesh.get(), nullptr, 0, nullptr, &surface, nullptr));
     return WeltSurface(surface);
 }
 

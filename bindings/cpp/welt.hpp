@@ -21,6 +21,7 @@
 #include <cstdint>
 #include <exception>
 #include <functional>
+#include <limits>
 #include <memory>
 #include <stdexcept>
 #include <string>
@@ -243,6 +244,18 @@ struct FeatureOptions : welt_feature_options {
     }
 };
 
+// The members of welt_batch_options, set to their defaults.
+struct BatchOptions : welt_batch_options {
+    BatchOptions() {
+        if (welt_batch_options_init(this, sizeof(welt_batch_options)) != WELT_OK)
+            throw Error(WELT_ERROR_ARGUMENT, "the library is older than welt.h: welt_batch_options is unknown to it");
+    }
+    explicit BatchOptions(std::uint32_t how_many_threads, std::size_t stride = 0) : BatchOptions() {
+        threads = how_many_threads;
+        input_stride = stride;
+    }
+};
+
 // --- Surfaces ----------------------------------------------------------------------------------------------------------
 
 // One number or view per level; level 0 is the mesh.
@@ -286,25 +299,128 @@ public:
     }
 };
 
-// A point of the limit surface and its derivatives.
+// A point of the limit surface and its first derivatives, and second ones.
+struct Tangents {
+    Vector position, du, dv;
+};
 struct Jet {
     Vector position, du, dv, duu, duv, dvv;
 };
+using Parameter = std::array<double, 2>;
 
+namespace detail {
+
+// The order of derivatives that T holds.
+template <class T>
+constexpr std::uint32_t order() {
+    static_assert(std::is_same_v<T, Vector> || std::is_same_v<T, Tangents> || std::is_same_v<T, Jet>,
+                  "evaluate gives Vector, Tangents or Jet");
+    static_assert(sizeof(T) % sizeof(Vector) == 0, "nothing lies between doubles");
+    return std::is_same_v<T, Vector> ? 0 : std::is_same_v<T, Tangents> ? 1 : 2;
+}
+
+inline void same(std::size_t first, std::size_t second, char const* message) {
+    if (first != second) throw Error(WELT_ERROR_ARGUMENT, message);
+}
+
+}  // namespace detail
+
+struct Curvature {
+    double greater, smaller;  // The principal curvatures.
+    Vector greater_direction, smaller_direction;
+    double mean, gaussian;
+};
+
+struct Line {
+    Vector origin, direction;
+};
+
+// The hits of line i are those from starts[i] up to starts[i + 1], exclusive.
+struct Hits {
+    std::vector<std::size_t> starts;
+    std::vector<welt_surface_point> points;
+};
+
+// Queries run on as many threads as they are told; 0 for as many as the machine has.
 class Surface : public detail::Handle<welt_surface, welt_surface_free> {
 public:
     using Handle::Handle;
-    // One point per face; corners may be empty for 0 everywhere.
-    std::vector<Jet> evaluate(View<std::uint32_t> faces, View<std::uint32_t> corners,
-                              View<std::array<double, 2>> parameters) const {
+    static constexpr double infinity = std::numeric_limits<double>::infinity();
+
+    // One point per face, as Vector (the position alone), Tangents or Jet; corners may be empty for 0 everywhere.
+    template <class T = Jet>
+    std::vector<T> evaluate(View<std::uint32_t> faces, View<std::uint32_t> corners, View<Parameter> parameters,
+                            std::uint32_t threads = 1) const {
+        equally_many(faces, corners, parameters);
+        BatchOptions const options(threads);
+        std::vector<T> values(faces.size());
+        detail::call(welt_surface_evaluate, get(), faces.data(), corners.data(), doubles(parameters), faces.size(),
+                     detail::order<T>(), &options, reinterpret_cast<double*>(values.data()),
+                     sizeof(T) / sizeof(double) * values.size());
+        return values;
+    }
+    std::vector<Curvature> curvature(View<std::uint32_t> faces, View<std::uint32_t> corners,
+                                     View<Parameter> parameters) const {
+        static_assert(sizeof(Curvature) == 10 * sizeof(double), "a curvature is 10 doubles");
+        equally_many(faces, corners, parameters);
+        std::vector<Curvature> values(faces.size());
+        detail::call(welt_surface_curvature, get(), faces.data(), corners.data(), doubles(parameters), faces.size(),
+                     reinterpret_cast<double*>(values.data()), 10 * values.size());
+        return values;
+    }
+    // starts: one per point, or empty.
+    std::vector<welt_surface_point> closest(Points points, double radius = infinity, View<welt_surface_point> starts = {},
+                                            std::uint32_t threads = 1) const {
+        if (!starts.empty()) detail::same(starts.size(), points.count(), "there must be one start per point");
+        BatchOptions const options(threads, points.stride());
+        std::vector<welt_surface_point> found(points.count());
+        detail::call(welt_surface_closest, get(), points.first(), points.count(), radius, starts.data(), &options,
+                     found.data(), found.size());
+        return found;
+    }
+    std::vector<double> signed_distances(Points points, std::uint32_t threads = 1) const {
+        BatchOptions const options(threads, points.stride());
+        std::vector<double> distances(points.count());
+        detail::call(welt_surface_signed_distances, get(), points.first(), points.count(), &options, distances.data(),
+                     distances.size());
+        return distances;
+    }
+    // first, last: which parameters of the lines count; rays unless told otherwise.
+    std::vector<welt_surface_point> first_hits(View<Line> lines, double first = 0, double last = infinity,
+                                               std::uint32_t threads = 1) const {
+        BatchOptions const options(threads);
+        std::vector<welt_surface_point> found(lines.size());
+        detail::call(welt_surface_first_hits, get(), doubles(lines), lines.size(), first, last, &options, found.data(),
+                     found.size());
+        return found;
+    }
+    Hits all_hits(View<Line> lines, double first = 0, double last = infinity, std::uint32_t threads = 1) const {
+        BatchOptions const options(threads);
+        Hits hits{std::vector<std::size_t>(lines.size() + 1), std::vector<welt_surface_point>(lines.size())};
+        std::size_t needed = 0;
+        auto const ask = [&] {
+            detail::call(welt_surface_all_hits, get(), doubles(lines), lines.size(), first, last, &options,
+                         hits.starts.data(), &needed, hits.points.data(), hits.points.size());
+        };
+        try {
+            ask();
+        } catch (Error const& error) {
+            if (error.code() != WELT_ERROR_BUFFER || needed <= hits.points.size()) throw;
+            hits.points.resize(needed);
+            ask();
+        }
+        hits.points.resize(needed);
+        return hits;
+    }
+
+private:
+    static void equally_many(View<std::uint32_t> faces, View<std::uint32_t> corners, View<Parameter> parameters) {
         if (parameters.size() != faces.size() || (!corners.empty() && corners.size() != faces.size()))
             throw Error(WELT_ERROR_ARGUMENT, "faces, corners and parameters are not equally many");
-        std::vector<Jet> jets(faces.size());
-        static_assert(sizeof(Jet) == 18 * sizeof(double), "a jet is 18 doubles");
-        detail::call(welt_surface_evaluate, get(), faces.data(), corners.data(),
-                     reinterpret_cast<double const*>(parameters.data()), faces.size(),
-                     reinterpret_cast<double*>(jets.data()), 18 * jets.size());
-        return jets;
+    }
+    template <class T>
+    static double const* doubles(View<T> values) {
+        return reinterpret_cast<double const*>(values.data());
     }
 };
 
@@ -409,11 +525,11 @@ public:
     }
     // edges: two vertices per edge.
     void set_edge_sharpness(View<std::uint32_t> edges, View<float> sharpness) {
-        same(edges.size(), 2 * sharpness.size(), "there must be two vertices per sharpness");
+        detail::same(edges.size(), 2 * sharpness.size(), "there must be two vertices per sharpness");
         detail::call(welt_mesh_set_edge_sharpness, get(), edges.data(), sharpness.data(), sharpness.size());
     }
     void set_vertex_sharpness(View<std::uint32_t> vertices, View<float> sharpness) {
-        same(vertices.size(), sharpness.size(), "there must be one vertex per sharpness");
+        detail::same(vertices.size(), sharpness.size(), "there must be one vertex per sharpness");
         detail::call(welt_mesh_set_vertex_sharpness, get(), vertices.data(), sharpness.data(), sharpness.size());
     }
     void set_holes(View<std::uint32_t> faces) { detail::call(welt_mesh_set_holes, get(), faces.data(), faces.size()); }
@@ -455,12 +571,24 @@ public:
         detail::call(welt_mesh_loop_limit, get(), doubles(points.positions), doubles(points.normals), 3 * vertex_count());
         return points;
     }
+    // As Surface::evaluate: Vector, Tangents or Jet.
+    template <class T = Jet>
+    std::vector<T> loop_evaluate(View<std::uint32_t> faces, View<Parameter> parameters, std::uint32_t threads = 1) const {
+        detail::same(faces.size(), parameters.size(), "there must be one face per pair of parameters");
+        BatchOptions const options(threads);
+        std::vector<T> values(faces.size());
+        detail::call(welt_mesh_loop_evaluate, get(), faces.data(), reinterpret_cast<double const*>(parameters.data()),
+                     faces.size(), detail::order<T>(), &options, reinterpret_cast<double*>(values.data()),
+                     sizeof(T) / sizeof(double) * values.size());
+        return values;
+    }
 
     // Features.
     Selection select(std::string_view selectors) const {
         return Selection(detail::make<welt_selection>(welt_selection_create, get(), selectors.data(), selectors.size()));
     }
     void mark(Selection const& selection) { detail::call(welt_mesh_mark, get(), selection.get()); }
+    // features: one per line.
     Report apply(Selection const& selection, std::string_view features, std::string_view settings = "",
                  FeatureOptions const& options = {}, Job const* job = nullptr) {
         return Job::run(job, [&](welt_job const* watched) {
@@ -476,7 +604,7 @@ public:
         });
     }
     void displace(View<std::uint32_t> vertices, View<double> heights) {
-        same(vertices.size(), heights.size(), "there must be one vertex per height");
+        detail::same(vertices.size(), heights.size(), "there must be one vertex per height");
         detail::call(welt_mesh_displace, get(), vertices.data(), heights.data(), heights.size());
     }
     // fit: one of WELT_FIT_*.
@@ -491,9 +619,6 @@ public:
     }
 
 private:
-    static void same(std::size_t first, std::size_t second, char const* message) {
-        if (first != second) throw Error(WELT_ERROR_ARGUMENT, message);
-    }
     static double* doubles(std::vector<Vector>& vectors) { return reinterpret_cast<double*>(vectors.data()); }
 
     template <class F, class... A>

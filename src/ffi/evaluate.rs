@@ -6,6 +6,7 @@ use super::error::WeltError;
 use super::failure::Failure;
 use super::options::{self, Options};
 use super::surface::WeltSurface;
+use crate::fault;
 use crate::mesh::FaceId;
 use crate::surface::{Derivatives, LimitSurface, Parameter};
 use crate::threads::in_ranges;
@@ -94,6 +95,8 @@ pub unsafe extern "C" fn welt_surface_evaluate(
             (&arguments::handle(surface, "surface")?.target.surface, options, points, buffer)
         };
         points.check(surface, count)?;
+        // Before the first row, since rows are written as they come.
+        fault::point("evaluate");
         // Fewer points are not worth a thread.
         const LEAST_PER_THREAD: usize = 1024;
         in_ranges(count, options.threads as usize, LEAST_PER_THREAD, |range| {

@@ -8,6 +8,7 @@ use super::failure::{Failure, Location, Place};
 use super::mesh::{WeltMesh, mesh_of};
 use super::options;
 use super::status::WELT_ERROR_MESH;
+use crate::fault;
 use crate::mesh::{FaceId, Mesh};
 use crate::subdivision::{LimitPoint, LoopSurface, NotTriangles, SurfacePoint};
 use crate::threads::in_ranges;
@@ -138,6 +139,7 @@ pub unsafe extern "C" fn welt_mesh_loop_evaluate(
                 return Err(Failure::argument(format!("a parameter of point {i} is NaN")));
             }
         }
+        fault::point("evaluate");
         in_ranges(count, options.threads as usize, 64, |range| {
             for i in range {
                 let uv = parameters.row(i);

@@ -5,10 +5,10 @@ use super::boundary::boundary;
 use super::error::{WELT_NONE, WeltError};
 use super::evaluate::WeltBatchOptions;
 use super::failure::Failure;
-
 use super::options;
 use super::status::WELT_ERROR_BUFFER;
 use super::surface::WeltSurface;
+use crate::fault;
 use crate::mesh::FaceId;
 use crate::surface::{ClosestOptions, Foot, Hit, LimitSurface, Parameter};
 use crate::threads::in_ranges;
@@ -85,7 +85,11 @@ fn each_row<T: Send>(
 ) -> Vec<T> {
     let parts = in_ranges(count, threads as usize, 16, |range| {
         let rows = rows.range(range.clone()).zip(range);
-        rows.map(|(row, i)| query(surface, i, row)).collect::<Vec<T>>()
+        let answer = |(row, i)| {
+            fault::point("query");
+            query(surface, i, row)
+        };
+        rows.map(answer).collect::<Vec<T>>()
     });
     parts.into_iter().flatten().collect()
 }

@@ -8,6 +8,7 @@ use super::feature::method;
 use super::job::WeltJob;
 use super::mesh::{WeltMesh, mesh_of};
 use super::report::{WeltReport, hand_over};
+use crate::fault;
 use crate::job::Job;
 use crate::mesh::{FaceId, VertexId};
 use crate::optimise::{self, Target};
@@ -138,6 +139,7 @@ unsafe fn evaluate_each<const N: usize>(
         if uv.iter().any(|parameter| parameter.is_nan()) {
             return Err(Failure::argument(format!("a parameter of point {i} is NaN")));
         }
+        fault::point("evaluate");
         found.push(value(surface.evaluate(FaceId(face), corner, uv[0], uv[1])));
     }
     buffer.fill(found.into_iter().flatten());

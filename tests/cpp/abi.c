@@ -111,13 +111,13 @@ static void results_outlive_the_mesh(void) {
           "import");
     check(welt_surface_create(mesh, NULL, 0, NULL, &surface, NULL) == WELT_OK, "surface");
     check(welt_refinement_create(mesh, 1, NULL, &refinement, NULL) == WELT_OK, "refinement");
-    check(welt_surface_evaluate(surface, &base, NULL, middle, 1, before, 18, NULL) == WELT_OK, "evaluate");
+    check(welt_surface_evaluate(surface, &base, NULL, middle, 1, 2, NULL, before, 18, NULL) == WELT_OK, "evaluate");
     check(welt_refinement_positions(refinement, 1, &view, NULL) == WELT_OK, "view");
     first = view[0];
     check(welt_mesh_set_positions(mesh, flat, 5, 0, NULL) == WELT_OK, "the mesh changes");
     check(view[0] == first, "the refinement does not");
     welt_mesh_free(mesh);
-    check(welt_surface_evaluate(surface, &base, NULL, middle, 1, after, 18, NULL) == WELT_OK, "evaluate");
+    check(welt_surface_evaluate(surface, &base, NULL, middle, 1, 2, NULL, after, 18, NULL) == WELT_OK, "evaluate");
     check(memcmp(before, after, sizeof before) == 0 && view[0] == first, "they outlive it");
     welt_surface_free(surface);
     welt_refinement_free(refinement);

@@ -79,6 +79,10 @@ static int32_t initialise_feature(void *options, size_t size) {
     return welt_feature_options_init((welt_feature_options *)options, size);
 }
 
+static int32_t initialise_batch(void *options, size_t size) {
+    return welt_batch_options_init((welt_batch_options *)options, size);
+}
+
 /* Whether a call accepts a struct whose first member is this size. */
 static int32_t use_import(const void *options) {
     welt_mesh *mesh = NULL;
@@ -96,6 +100,22 @@ static int32_t use_feature(const void *options) {
                                 (const welt_feature_options *)options, NULL, NULL, NULL);
     check(welt_mesh_vertex_count(mesh) == (status == WELT_OK ? 28u : 16u), "a refused call changes nothing");
     welt_selection_free(selection);
+    welt_mesh_free(mesh);
+    return status;
+}
+
+static int32_t use_batch(const void *options) {
+    const uint32_t face = 4;
+    const double middle[2] = {0.5, 0.5};
+    double position[3] = {-7.0, -7.0, -7.0};
+    welt_mesh *mesh = sheet();
+    welt_surface *surface = NULL;
+    int32_t status;
+    check(welt_surface_create(mesh, NULL, 0, NULL, &surface, NULL) == WELT_OK, "surface");
+    status = welt_surface_evaluate(surface, &face, NULL, middle, 1, 0, (const welt_batch_options *)options, position, 3,
+                                   NULL);
+    check(fabs(position[0] - (status == WELT_OK ? 1.5 : -7.0)) < 1e-14, "a refused call writes nothing");
+    welt_surface_free(surface);
     welt_mesh_free(mesh);
     return status;
 }
@@ -138,7 +158,9 @@ static void sizes(const char *name, initialise init, int32_t (*use)(const void *
 }
 
 static void constants_that_do_not_exist(void) {
-    const uint32_t wrong[3] = {3, 1000, UINT32_MAX};
+    const uint32_t wrong[3] = {3, 1000, UINT32_MAX}, wrong_fit[3] = {5, 1000, UINT32_MAX}, face = 4;
+    const double middle[2] = {0.5, 0.5};
+    double values[18];
     welt_mesh *mesh = sheet(), *none = NULL;
     welt_surface *surface = NULL;
     welt_selection *selection = NULL;
@@ -151,16 +173,42 @@ static void constants_that_do_not_exist(void) {
         check(welt_mesh_set_subdivision(mesh, wrong[i], 0, NULL) == WELT_ERROR_ARGUMENT, "WELT_BOUNDARY_*");
         check(welt_mesh_set_subdivision(mesh, 0, wrong[i], NULL) == WELT_ERROR_ARGUMENT, "WELT_CREASING_*");
         check(import(NULL, wrong[i], &none) == WELT_ERROR_ARGUMENT && !none, "WELT_FORMAT_*");
-        check(welt_mesh_fit(mesh, NULL, 0, surface, wrong[i], NULL, NULL, NULL) == WELT_ERROR_ARGUMENT, "WELT_FIT_*");
-        options.fit = wrong[i];
+        check(welt_mesh_fit(mesh, NULL, 0, surface, wrong_fit[i], NULL, NULL, NULL) == WELT_ERROR_ARGUMENT, "WELT_FIT_*");
+        options.fit = wrong_fit[i];
         check(welt_feature_apply(mesh, selection, "groove", NUL, NULL, 0, &options, NULL, NULL, NULL) ==
                   WELT_ERROR_ARGUMENT,
               "WELT_FIT_* of options");
+        options.fit = WELT_FIT_NONE;
+        options.parity = wrong[i];
+        check(welt_feature_apply(mesh, selection, "groove", NUL, NULL, 0, &options, NULL, NULL, NULL) ==
+                  WELT_ERROR_ARGUMENT,
+              "WELT_PARITY_*");
+        options.parity = WELT_PARITY_AUTO;
+        check(welt_surface_evaluate(surface, &face, NULL, middle, 1, wrong[i], NULL, values, 18, NULL) ==
+                  WELT_ERROR_ARGUMENT,
+              "an order of derivatives");
     }
     check(welt_mesh_vertex_count(mesh) == 16, "the mesh is as it was");
     welt_selection_free(selection);
     welt_surface_free(surface);
     welt_mesh_free(mesh);
+}
+
+/* Distances and parameters of lines that are NaN are refused; coordinates find nothing. */
+static void queries(const welt_surface *surface, int kind, double bad) {
+    double line[6] = {1.5, 1.5, 1.0, 0.0, 0.0, -1.0};
+    const int32_t expected = kind == 0 ? WELT_ERROR_ARGUMENT : WELT_OK;
+    welt_surface_point point;
+    size_t starts[2] = {7, 7}, needed = 7;
+    check(welt_surface_closest(surface, line, 1, bad, NULL, NULL, &point, 1, NULL) == expected, "a radius");
+    check(welt_surface_first_hits(surface, line, 1, bad, HUGE_VAL, NULL, &point, 1, NULL) == expected, "first");
+    check(welt_surface_all_hits(surface, line, 1, 0.0, bad, NULL, starts, &needed, &point, 1, NULL) == expected, "last");
+    check(starts[0] == (kind == 0 ? 7u : 0u) && needed == (kind == 0 ? 7u : kind == 1 ? 1u : 0u), "hits");
+    line[1] = bad;
+    check(welt_surface_closest(surface, line, 1, HUGE_VAL, NULL, NULL, &point, 1, NULL) == WELT_OK, "a point");
+    check(point.face == WELT_NONE && point.distance == 0.0, "is close to nothing");
+    check(welt_surface_first_hits(surface, line, 1, 0.0, HUGE_VAL, NULL, &point, 1, NULL) == WELT_OK, "a line");
+    check(point.face == WELT_NONE && point.distance == 0.0, "hits nothing");
 }
 
 /* Every number that a call reads, as none: kind 0 is NaN, 1 and 2 are the infinities. */
@@ -198,12 +246,16 @@ static void numbers_that_are_none(int kind) {
     parameters[0] = 0.5;
     parameters[1] = bad;
     if (kind == 0) {
-        check(welt_surface_evaluate(surface, &face, NULL, parameters, 1, values, 18, NULL) == WELT_ERROR_ARGUMENT,
+        check(welt_surface_evaluate(surface, &face, NULL, parameters, 1, 2, NULL, values, 18, NULL) == WELT_ERROR_ARGUMENT,
               "a parameter");
     } else {
-        check(welt_surface_evaluate(surface, &face, NULL, parameters, 1, values, 18, NULL) == WELT_OK, "a parameter");
+        check(welt_surface_evaluate(surface, &face, NULL, parameters, 1, 2, NULL, values, 18, NULL) == WELT_OK, "a parameter");
         check(fabs(values[1] - (kind == 1 ? 2.0 : 1.0)) < 1e-14, "is moved to the nearest inside");
     }
+    check(welt_surface_curvature(surface, &face, NULL, parameters, 1, values, 18, NULL) ==
+              (kind == 0 ? WELT_ERROR_ARGUMENT : WELT_OK),
+          "a parameter of curvature");
+    queries(surface, kind, bad);
     check(welt_mesh_positions(mesh, &view, NULL) == WELT_OK && welt_mesh_vertex_count(mesh) == 16, "view");
     positions[7] = view[7];
     check(memcmp(positions, view, sizeof positions) == 0, "the mesh is as it was");
@@ -215,7 +267,8 @@ static void numbers_that_are_none(int kind) {
 int main(void) {
     versions();
     sizes("welt_import_options_init", initialise_import, use_import, 16, sizeof(welt_import_options));
-    sizes("welt_feature_options_init", initialise_feature, use_feature, 16, sizeof(welt_feature_options));
+    sizes("welt_feature_options_init", initialise_feature, use_feature, 20, sizeof(welt_feature_options));
+    sizes("welt_batch_options_init", initialise_batch, use_batch, sizeof(welt_batch_options), sizeof(welt_batch_options));
     constants_that_do_not_exist();
     numbers_that_are_none(0);
     numbers_that_are_none(1);

@@ -124,6 +124,11 @@ void surfaces() {
     that(std::abs(jet.position[0] - 3.5) < 1e-14 && std::abs(jet.du[0] - 1.0) < 1e-14, "evaluation");
     that(std::isnan(mesh.freeze(std::array<std::uint32_t, 1>{0}).evaluate(face, {}, middle)[0].position[0]),
          "a face that was not frozen");
+    std::vector<welt::Vector> const positions = mesh.freeze().evaluate<welt::Vector>(face, {}, middle);
+    that(positions.at(0) == jet.position, "positions alone");
+    that(mesh.freeze().evaluate<welt::Tangents>(face, {}, middle, 2).at(0).dv == jet.dv, "first derivatives");
+    welt::Curvature const flat = mesh.freeze().curvature(face, {}, middle).at(0);
+    that(flat.greater == 0.0 && flat.gaussian == 0.0 && flat.greater_direction[2] == 0.0, "a plane is not curved");
     that(mesh.limit_normals()[10] == welt::Vector{0, 0, 1} && mesh.limit_positions()[10][2] == 0.0, "limit");
     std::uint32_t const corner[] = {0};
     float const infinite[] = {10.0f};
@@ -137,6 +142,41 @@ void surfaces() {
                               std::array<welt::Vector, 3>{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}});
     that(triangle.refine_loop(2).face_count() == 16, "Loop");
     that(triangle.loop_limit().normals[0] == welt::Vector{0, 0, 1}, "normals of Loop");
+    std::array<std::uint32_t, 1> const only{0};
+    std::array<welt::Parameter, 1> const third{{{1.0 / 3.0, 1.0 / 3.0}}};
+    that(triangle.loop_evaluate<welt::Vector>(only, third)[0][2] == 0.0 &&
+             std::abs(triangle.loop_evaluate(only, third)[0].position[0] - 1.0 / 3.0) < 1e-14,
+         "the middle of a triangle");
+}
+
+// On a flat sheet at height 0, and in and out of the surface of a cube.
+void queries() {
+    welt::Surface const sheet = make_sheet().freeze();
+    struct Padded {
+        double x, y, z, weight;
+    };
+    Padded const padded[] = {{2.5, 3.5, 2, NAN}, {4.25, 1.5, -1, NAN}};
+    welt::Points const points(&padded[0].x, 2, sizeof(Padded));
+    std::vector<welt_surface_point> const feet = sheet.closest(points);
+    that(std::abs(feet.at(0).distance - 2.0) < 1e-12 && std::abs(feet.at(1).position[0] - 4.25) < 1e-12, "closest points");
+    that(sheet.closest(points, 1.5, feet).at(0).face == WELT_NONE, "too far");
+    failure(WELT_ERROR_ARGUMENT, [&] { sheet.closest(points, 9.0, welt::View<welt_surface_point>(feet.data(), 1)); });
+    welt::Line const lines[] = {{{2.5, 3.5, 4}, {0, 0, -2}}, {{0, 0, 1}, {1, 0, 0}}};
+    that(sheet.first_hits(lines).at(0).distance == 2.0 && sheet.first_hits(lines)[1].face == WELT_NONE, "first hits");
+    failure(WELT_ERROR_ARGUMENT, [&] { sheet.signed_distances(points); });
+
+    std::vector<std::uint32_t> const corners{0, 2, 3, 1, 4, 5, 7, 6, 0, 1, 5, 4, 2, 6, 7, 3, 0, 4, 6, 2, 1, 3, 7, 5};
+    std::vector<welt::Vector> cage;
+    for (int i = 0; i < 8; ++i) cage.push_back({i % 2 * 2.0 - 1, i / 2 % 2 * 2.0 - 1, i / 4 * 2.0 - 1});
+    welt::Surface const cube = welt::Mesh(std::vector<std::uint32_t>(6, 4), corners, cage).freeze();
+    std::array<welt::Vector, 2> const places{{{0, 0, 0}, {0, 0, 3}}};
+    std::vector<double> const distances = cube.signed_distances(places);
+    that(distances.at(0) < -0.4 && distances.at(1) > 2.0, "inside is negative");
+    // Two hits where room for one is tried first.
+    std::array<welt::Line, 1> const through{{{{0.1, 0.2, 5}, {0, 0, -1}}}};
+    welt::Hits const hits = cube.all_hits(through);
+    that(hits.starts == std::vector<std::size_t>{0, 2} && hits.points.size() == 2, "in and out");
+    that(hits.points.at(0).distance < hits.points.at(1).distance && hits.points[0].normal[2] > 0.5, "in order");
 }
 
 void features() {
@@ -156,8 +196,9 @@ void features() {
     welt::Mesh other = make_sheet();
     other.mark(marks);
     welt::Rules const rules = welt::Rules::load(RULES);
-    that(rules.parameters().at(0).name == "height" && rules.parameters()[0].high == 10.0, "parameters");
-    that(welt::Rules::linear().parameters().empty(), "the rules that come with the library");
+    std::vector<welt::Rules::Parameter> const parameters = rules.parameters();
+    that(parameters.back().name == "height" && parameters.back().high == 10.0, "parameters");
+    that(welt::Rules::linear().parameters().size() + 1 == parameters.size(), "the rules that come with the library");
     other.apply(other.select("ring:2,3"), rules);
     that(welt::feature_list().json().find("groove") != std::string_view::npos, "features");
 
@@ -212,6 +253,7 @@ int main() {
     errors_have_places();
     options_and_files();
     surfaces();
+    queries();
     features();
     jobs();
     return check::result();

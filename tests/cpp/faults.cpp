@@ -114,7 +114,7 @@ void a_panic_at_every_place() {
     std::printf("%d panics; meshes: %d poisoned, %d as before\n", outcomes["panics"], outcomes["poisoned"],
                 outcomes["as before"]);
     check::that(outcomes["poisoned"] > 50 && outcomes["as before"] > 5, "both outcomes occur");
-    for (char const* stage : {"entry", "read", "build", "refine", "limit", "freeze", "evaluate", "mark", "rules", "fit",
+    for (char const* stage : {"entry", "read", "build", "refine", "limit", "freeze", "evaluate", "query", "mark", "rules", "fit",
                               "displace", "deviation", "report", "write", "positions", "sharpness", "holes"})
         check::that(stages.count(stage) == 1, std::string("no panic in stage ") + stage);
     for (std::string const& stage : stages) std::printf("  %s\n", stage.c_str());

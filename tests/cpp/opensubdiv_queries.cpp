@@ -205,9 +205,8 @@ void compare(std::string const& name, Polygons const& polygons, Mesh const& mesh
     if (name.rfind("osd/loop", 0) == 0 || polygons.sizes.size() > 800 || polygons.sizes.size() < 6 || count == shapes / 2) return;
     ++count;
     Oracle const oracle(polygons);
-    welt_surface* made = nullptr;
-    check::that(welt_surface_create(mesh.get(), nullptr, 0, &made, nullptr) == WELT_OK, name + ": freezing");
-    Surface const surface(made);
+    welt::Surface const surface = mesh.freeze();
+    welt_surface* const made = surface.get();
     Box box;
     for (Vector const& p : polygons.positions) box.add(p);
     double const size = length(box.high - box.low);

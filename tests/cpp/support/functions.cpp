@@ -1,5 +1,6 @@
 #include "functions.hpp"
 
+#include <cmath>
 #include <cstring>
 #include <tuple>
 #include <type_traits>
@@ -76,6 +77,9 @@ double const heights[] = {0.1, -0.1};
 std::uint32_t const some_faces[] = {5, 9};
 std::uint32_t const no_corners[] = {0, 0};
 double const parameters[] = {0.25, 0.5, 1.0, 0.0};
+std::uint32_t const triangle_faces[] = {0, 3};
+double const points[] = {1.0, 2.0, 0.5, 2.5, 0.5, -1.0};
+double const lines[] = {1.2, 1.3, 5.0, 0.0, 0.0, -1.0, 2.6, 2.3, -5.0, 0.0, 0.1, 1.0};
 
 #define ADD(function, pointers, ...) add(#function, pointers, function, [](World& w) { (void)w; return std::tuple __VA_ARGS__; })
 
@@ -148,8 +152,21 @@ void surfaces() {
         w.out.doubles.size(), &w.out.error});
     ADD(welt_surface_create, "rooro", {w.mesh(), some_faces, 2, w.job(), &w.out.surface, &w.out.error});
     ADD(welt_surface_free, "f", {take(w.surface())});
-    ADD(welt_surface_evaluate, "rrorro", {w.surface(), some_faces, no_corners, parameters, 2, w.out.doubles.data(),
+    ADD(welt_batch_options_init, "r", {w.batch_options(), sizeof(welt_batch_options)});
+    ADD(welt_mesh_loop_evaluate, "rrroro", {w.triangles(), triangle_faces, parameters, 2, 2, w.batch_options(),
+        w.out.doubles.data(), w.out.doubles.size(), &w.out.error});
+    ADD(welt_surface_evaluate, "rrororo", {w.surface(), some_faces, no_corners, parameters, 2, 2, w.batch_options(),
+        w.out.doubles.data(), w.out.doubles.size(), &w.out.error});
+    ADD(welt_surface_curvature, "rrorro", {w.surface(), some_faces, no_corners, parameters, 2, w.out.doubles.data(),
         w.out.doubles.size(), &w.out.error});
+    ADD(welt_surface_closest, "rrooro", {w.surface(), points, 2, HUGE_VAL, w.starts, w.batch_options(),
+        w.out.points.data(), w.out.points.size(), &w.out.error});
+    ADD(welt_surface_signed_distances, "rroro", {w.closed(), points, 2, w.batch_options(), w.out.doubles.data(),
+        w.out.doubles.size(), &w.out.error});
+    ADD(welt_surface_first_hits, "rroro", {w.surface(), lines, 2, 0.0, HUGE_VAL, w.batch_options(),
+        w.out.points.data(), w.out.points.size(), &w.out.error});
+    ADD(welt_surface_all_hits, "rrororo", {w.surface(), lines, 2, 0.0, HUGE_VAL, w.batch_options(), w.out.places.data(),
+        &w.out.needed, w.out.points.data(), w.out.points.size(), &w.out.error});
     ADD(welt_mesh_deviation, "rrroo", {w.mesh(), w.second(), 2, w.out.doubles.data(), w.job(), &w.out.error});
 }
 

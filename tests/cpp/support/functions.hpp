@@ -23,12 +23,15 @@ public:
     welt_selection*& selection();
     welt_rules*& rules();
     welt_surface*& surface();
+    // Of the tetrahedron.
+    welt_surface* closed();
     welt_refinement*& refinement();
     welt_report*& report();
     welt_error*& failure();
     welt_job*& job();
     welt_import_options* import_options();
     welt_feature_options* feature_options();
+    welt_batch_options* batch_options();
 
     // All that a call may have changed, as bytes; reports are left out, since they have times.
     std::string content() const;
@@ -49,24 +52,31 @@ public:
         std::uint32_t const* integers_view = nullptr;
         std::vector<double> doubles, more_doubles;
         std::vector<std::uint32_t> integers, more_integers;
+        std::vector<std::size_t> places;
+        std::vector<welt_surface_point> points;
         std::vector<char> text;
+        // No part of the content: a call that has too little room writes it as well.
+        std::size_t needed = 0;
     } out;
 
     // Arrays that calls read.
     std::vector<std::uint32_t> sizes, corners;
     std::vector<double> positions, moved;
+    welt_surface_point starts[2] = {};
 
 private:
     std::vector<welt_mesh*> meshes_;
     welt_selection* selection_ = nullptr;
     welt_rules* rules_ = nullptr;
     welt_surface* surface_ = nullptr;
+    welt_surface* closed_ = nullptr;
     welt_refinement* refinement_ = nullptr;
     welt_report* report_ = nullptr;
     welt_error* failure_ = nullptr;
     welt_job* job_ = nullptr;
     welt_import_options import_options_;
     welt_feature_options feature_options_;
+    welt_batch_options batch_options_;
 };
 
 // How a call differs from one that succeeds.

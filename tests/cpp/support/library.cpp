@@ -10,6 +10,20 @@ std::vector<Vector> vectors(welt::View<welt::Vector> all) {
     return copy;
 }
 
+std::vector<welt::Parameter> pairs(std::vector<double> const& parameters) {
+    std::vector<welt::Parameter> all;
+    for (std::size_t i = 0; i + 1 < parameters.size(); i += 2) all.push_back({parameters[i], parameters[i + 1]});
+    return all;
+}
+
+std::vector<Jet> jets(std::vector<welt::Jet> const& all) {
+    std::vector<Jet> copy;
+    for (welt::Jet const& jet : all)
+        copy.push_back({vector(jet.position), vector(jet.du), vector(jet.dv), vector(jet.duu), vector(jet.duv),
+                        vector(jet.dvv)});
+    return copy;
+}
+
 }  // namespace
 
 Mesh make_mesh(Polygons const& polygons) {
@@ -54,13 +68,12 @@ LoopLimit loop_limit(Mesh const& mesh) {
 
 std::vector<Jet> evaluate(Mesh const& mesh, std::vector<std::uint32_t> const& faces,
                           std::vector<std::uint32_t> const& corners, std::vector<double> const& parameters) {
-    std::vector<std::array<double, 2>> pairs;
-    for (std::size_t i = 0; i + 1 < parameters.size(); i += 2) pairs.push_back({parameters[i], parameters[i + 1]});
-    std::vector<Jet> jets;
-    for (welt::Jet const& jet : mesh.freeze(faces).evaluate(faces, corners, pairs))
-        jets.push_back({vector(jet.position), vector(jet.du), vector(jet.dv), vector(jet.duu), vector(jet.duv),
-                        vector(jet.dvv)});
-    return jets;
+    return jets(mesh.freeze(faces).evaluate(faces, corners, pairs(parameters)));
+}
+
+std::vector<Jet> evaluate_loop(Mesh const& mesh, std::vector<std::uint32_t> const& faces,
+                               std::vector<double> const& parameters) {
+    return jets(mesh.loop_evaluate(faces, pairs(parameters)));
 }
 
 std::vector<Vector> limit_positions(Mesh const& mesh) { return vectors(mesh.limit_positions()); }

@@ -52,10 +52,13 @@ World::World() : positions(sheet(0.2)), moved(sheet(0.1)), meshes_(3) {
     out.more_doubles.assign(1000, -7.0);
     out.integers.assign(1000, 7);
     out.more_integers.assign(1000, 7);
+    out.places.assign(10, 7);
+    out.points.assign(10, welt_surface_point{});
     out.text.assign(100, 'x');
     need(welt_import_options_init(&import_options_, sizeof import_options_));
     need(welt_feature_options_init(&feature_options_, sizeof feature_options_));
     feature_options_.deviation = 1;
+    need(welt_batch_options_init(&batch_options_, sizeof batch_options_));
 }
 
 World::~World() {
@@ -63,7 +66,7 @@ World::~World() {
     welt_mesh_free(out.mesh);
     for (welt_selection* selection : {selection_, out.selection}) welt_selection_free(selection);
     for (welt_rules* rules : {rules_, out.rules}) welt_rules_free(rules);
-    for (welt_surface* surface : {surface_, out.surface}) welt_surface_free(surface);
+    for (welt_surface* surface : {surface_, closed_, out.surface}) welt_surface_free(surface);
     for (welt_refinement* refinement : {refinement_, out.refinement}) welt_refinement_free(refinement);
     for (welt_report* report : {report_, out.report}) welt_report_free(report);
     for (welt_job* job : {job_, out.job}) welt_job_free(job);
@@ -101,6 +104,11 @@ welt_surface*& World::surface() {
     return surface_;
 }
 
+welt_surface* World::closed() {
+    if (!closed_) need(welt_surface_create(triangles(), nullptr, 0, nullptr, &closed_, nullptr));
+    return closed_;
+}
+
 welt_refinement*& World::refinement() {
     if (!refinement_) need(welt_refinement_create(mesh(), 1, nullptr, &refinement_, nullptr));
     return refinement_;
@@ -131,6 +139,7 @@ welt_job*& World::job() {
 
 welt_import_options* World::import_options() { return &import_options_; }
 welt_feature_options* World::feature_options() { return &feature_options_; }
+welt_batch_options* World::batch_options() { return &batch_options_; }
 
 std::string content_of(welt_mesh const* mesh) {
     if (!mesh) return "none";
@@ -160,6 +169,8 @@ std::string World::content() const {
     append(bytes, out.more_doubles.data(), out.more_doubles.size());
     append(bytes, out.integers.data(), out.integers.size());
     append(bytes, out.more_integers.data(), out.more_integers.size());
+    append(bytes, out.places.data(), out.places.size());
+    append(bytes, out.points.data(), out.points.size());
     bytes += "selection " + std::to_string(welt_selection_count(out.selection));
     bytes += "rules " + std::to_string(welt_rules_parameter_count(out.rules));
     bytes += "refinement " + std::to_string(welt_refinement_vertex_count(out.refinement, 1));
