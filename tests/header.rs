@@ -195,6 +195,11 @@ fn constants_keep_their_numbers() {
         ("WELT_FIT_NONE", "0"),
         ("WELT_FIT_LOOP", "1"),
         ("WELT_FIT_SOLVE", "2"),
+        ("WELT_FIT_SURFACE", "3"),
+        ("WELT_FIT_SURFACE_SLIDE", "4"),
+        ("WELT_PARITY_AUTO", "0"),
+        ("WELT_PARITY_ALL_QUAD", "1"),
+        ("WELT_PARITY_LOCAL", "2"),
     ]);
     assert_eq!(defined, known);
 }
