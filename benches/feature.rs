@@ -1,4 +1,4 @@
-//! A whole groove: round a ring of 200 quads in meshes of 10 thousand to a million, and on a chair.
+//! A whole groove: round a ring of 200 quads in meshes of 10 thousand to a million, on a chair, and 1,000 marks at once.
 //!
 //! `cargo bench --bench feature`. Medians over freshly built meshes; building and reading are not counted.
 
@@ -30,15 +30,16 @@ fn torus(n: u32, m: u32) -> Polygons {
     polygons
 }
 
-fn measure(name: &str, polygons: &Polygons, mark: &str) {
+fn measure(name: &str, polygons: &Polygons, marks: &[String]) {
     let request = Request::features(&["groove"], &["width=30%", "depth=10%"]).expect("a request");
     let options = Options::default();
     let mut runs: Vec<(f64, Report)> = (0..RUNS)
         .map(|_| {
             let mut mesh = Mesh::from_polygons(polygons).expect("a mesh");
             let start = Instant::now();
-            let selector = Selector::parse(mark).expect("a selector");
-            let selection = Selection::resolve(&mesh, &[selector]).expect("marks");
+            let selectors: Vec<Selector> =
+                marks.iter().map(|mark| Selector::parse(mark).expect("a selector")).collect();
+            let selection = Selection::resolve(&mesh, &selectors).expect("marks");
             let report =
                 feature::apply(&mut mesh, &selection, &request, &options, &Job::new()).expect("applied");
             (start.elapsed().as_secs_f64() * 1e3, report)
@@ -53,8 +54,19 @@ fn measure(name: &str, polygons: &Polygons, mark: &str) {
 fn main() {
     let chair = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/models/mid_century_chair.obj");
     let chair = welt::io::import(&chair, &welt::io::ImportOptions::default()).expect("the chair").mesh;
-    measure("chair of 1142 faces", &chair.to_polygons(), "ring:240,262");
+    measure("chair of 1142 faces", &chair.to_polygons(), &["ring:240,262".into()]);
     for m in [50, 500, 5000] {
-        measure(&format!("torus of {} faces", 200 * m), &torus(200, m), "ring:0,200");
+        measure(&format!("torus of {} faces", 200 * m), &torus(200, m), &["ring:0,200".into()]);
+    }
+    // 1,000 marks: five rings; then a hundred bands of ten that end in the open, so that 200 faces are odd.
+    let rings: Vec<String> = (0..5).map(|j| format!("ring:{},{}", 2000 * j, 2000 * j + 200)).collect();
+    let bands: Vec<String> = (0..1000)
+        .map(|i| (i % 10 + 20 * (i / 10 % 10), 5 * (i / 100)))
+        .map(|(i, j)| format!("edge:{},{}", 200 * j + i, 200 * (j + 1) + i))
+        .collect();
+    for m in [50, 5000] {
+        let polygons = torus(200, m);
+        measure(&format!("five rings in {} faces", 200 * m), &polygons, &rings);
+        measure(&format!("100 bands in {} faces", 200 * m), &polygons, &bands);
     }
 }

@@ -113,7 +113,8 @@ extern "C" {
 #define WELT_ERROR_SYNTAX -9
 
 /*
- A rule failed, or the rules do not come to an end; the message names rule and place. The mesh is as it was before.
+ A rule failed, or the rules do not come to an end, or, where that is asked for, a mark is left that no rule handles; the
+ message names rule and place. The mesh is as it was before.
  */
 #define WELT_ERROR_RULE -10
 
@@ -208,6 +209,32 @@ extern "C" {
 #define WELT_FIT_SOLVE 2
 
 /*
+ Least squares of distance and slope over samples of the surface; vertices move along the normal.
+ */
+#define WELT_FIT_SURFACE 3
+
+/*
+ The same; vertices that were there before may also slide along the surface, which brings the new surface closest.
+ */
+#define WELT_FIT_SURFACE_SLIDE 4
+
+/*
+ A line of vertices between faces that the marks leave with an odd number of sides, where the way is short; one irregular
+ face each elsewhere.
+ */
+#define WELT_PARITY_AUTO 0
+
+/*
+ Lines wherever there is a way, also to triangles and pentagons, so that no new face is other than a quad.
+ */
+#define WELT_PARITY_ALL_QUAD 1
+
+/*
+ No lines: one irregular face each.
+ */
+#define WELT_PARITY_LOCAL 2
+
+/*
  Why a call failed: a code, a message of one line, and the places it speaks of. Never changes.
  */
 typedef struct welt_error welt_error;
@@ -270,6 +297,29 @@ typedef struct {
 } welt_import_options;
 
 /*
+ How a call does a batch of points or lines. Set it with welt_batch_options_init before use.
+ */
+typedef struct {
+    /*
+     sizeof (welt_batch_options).
+     */
+    uint32_t struct_size;
+    /*
+     Threads to use, 1 by default; 0 for as many as the machine has. Results do not depend on it.
+     */
+    uint32_t threads;
+    /*
+     Bytes from one element of the input (a pair of parameters, a point, a line) to the next; 0, the default, where nothing
+     lies between them.
+     */
+    size_t input_stride;
+    /*
+     Bytes from one element of the results to the next; 0, the default, where nothing lies between them.
+     */
+    size_t output_stride;
+} welt_batch_options;
+
+/*
  How a feature is applied. Set it by welt_feature_options_init, then change what differs.
  */
 typedef struct {
@@ -286,10 +336,50 @@ typedef struct {
      */
     uint32_t deviation;
     /*
-     Leave it 0.
+     What is done about faces that the marks leave with an odd number of sides: one of WELT_PARITY_*. Default
+     WELT_PARITY_AUTO.
      */
-    uint32_t reserved;
+    uint32_t parity;
+    /*
+     Not 0: marks that no rule handles are an error, WELT_ERROR_RULE, whose places are the marked edges; else they
+     are kept and the report lists them. Default 0.
+     */
+    uint32_t strict;
 } welt_feature_options;
+
+/*
+ A point of the surface that a query found.
+ */
+typedef struct {
+    /*
+     The face in which it lies; WELT_NONE where nothing was found, the rest is 0 then.
+     */
+    uint32_t face;
+    /*
+     The patch of the face; see welt_surface_evaluate.
+     */
+    uint32_t corner;
+    /*
+     Parameter of the patch.
+     */
+    double u;
+    /*
+     Parameter of the patch.
+     */
+    double v;
+    /*
+     x, y and z.
+     */
+    double position[3];
+    /*
+     The unit normal, outwards; (0, 0, 0) where the surface has none.
+     */
+    double normal[3];
+    /*
+     For a closest point the distance; for a hit the parameter s of the line: the hit is origin + s * direction.
+     */
+    double distance;
+} welt_surface_point;
 
 /*
  The version of the library that runs, in the form of WELT_VERSION. It can differ from that of the header when the
@@ -297,6 +387,14 @@ typedef struct {
  */
 WELT_API
 uint32_t welt_version(void);
+
+/*
+ 1 where a program runs with this library that was compiled with a header of this WELT_VERSION and WELT_ABI_VERSION: the
+ binary interface is the same, and the library is not older than the header. Else 0. Since: 0.1.
+ */
+WELT_API
+int32_t welt_is_compatible(uint32_t version,
+                           uint32_t abi_version);
 
 /*
  The version of the library that runs as text, such as "0.1.0". Owned by the library, valid for ever. Since: 0.1.
@@ -373,6 +471,22 @@ WELT_API uint32_t welt_error_place_column(const welt_error *error, size_t index)
  Since: 0.1.
  */
 WELT_API int32_t welt_job_create(welt_job **job, welt_error **error);
+
+/*
+ Has a function called with the progress at every step of a call that works with the job.
+
+ job: must not be NULL; no call may work with it meanwhile.
+ observer: is called by the thread that made the call, with the progress in [0, 1]. It may use the functions of this job,
+ welt_job_cancel above all, and handles that the call does not change. It must come back: no exception, no longjmp.
+ context: is passed to the function as it is; may be NULL.
+
+ Since: 0.1.
+ */
+WELT_API
+int32_t welt_job_observe(welt_job *job,
+                         void (*observer)(void *context, double progress),
+                         void *context,
+                         welt_error **error);
 
 /*
  Frees a job. NULL is allowed. Since: 0.1.
@@ -736,6 +850,13 @@ size_t welt_refinement_face_count(const welt_refinement *refinement,
                                   uint32_t level);
 
 /*
+ Sum of the numbers of vertices of all faces of a level; 0 where refinement is NULL or has no such level. Since: 0.1.
+ */
+WELT_API
+size_t welt_refinement_face_vertex_count(const welt_refinement *refinement,
+                                         uint32_t level);
+
+/*
  The positions of the vertices of a level as a view.
 
  refinement: must not be NULL.
@@ -756,8 +877,8 @@ int32_t welt_refinement_positions(const welt_refinement *refinement,
 
  refinement: must not be NULL.
  level: 0 to the depth.
- vertices: receives the address of the vertices of all faces one after the other, counter-clockwise, 0-based. They belong
- to the refinement and are valid until it is freed. On level 1 and above there are 4 per face: a face covers one
+ vertices: receives the address of the vertices of all faces one after the other, counter-clockwise, 0-based:
+ welt_refinement_face_vertex_count(refinement, level) numbers that belong to the refinement and are valid until it is freed. On level 1 and above there are 4 per face: a face covers one
  corner of a face of the level before, and has the point of that corner, of the edge that leaves it, of the face, and
  of the edge that arrives. On level 0 the numbers of vertices are those that welt_mesh_faces gives.
 
@@ -842,6 +963,33 @@ int32_t welt_mesh_loop_limit(const welt_mesh *mesh,
                              double *normals,
                              size_t capacity,
                              welt_error **error);
+
+/*
+ Evaluates the Loop limit surface of a triangle mesh at parameters of faces.
+
+ mesh: must not be NULL.
+ faces: the face of each point.
+ parameters: u and v of each point, the weights of the second and the third corner: u >= 0, v >= 0, u + v <= 1; what lies
+ outside is moved inside.
+ count: number of points.
+ derivatives: up to which order, 0 to 2.
+ options: threads and strides; NULL for the defaults.
+ values: receives per point what welt_surface_evaluate writes.
+ capacity: room in values, in doubles up to the end of the last point.
+
+ Fails with WELT_ERROR_MESH where a face of the mesh is no triangle, and with WELT_ERROR_ARGUMENT where a face does not
+ exist or a parameter is NaN. Since: 0.1.
+ */
+WELT_API
+int32_t welt_mesh_loop_evaluate(const welt_mesh *mesh,
+                                const uint32_t *faces,
+                                const double *parameters,
+                                size_t count,
+                                uint32_t derivatives,
+                                const welt_batch_options *options,
+                                double *values,
+                                size_t capacity,
+                                welt_error **error);
 
 /*
  Finds the edges that selectors name.
@@ -1021,8 +1169,8 @@ int32_t welt_feature_list(welt_report **list,
  warnings. Free it with welt_report_free.
 
  Fails with WELT_ERROR_ARGUMENT (an unknown feature or setting, a selection of another mesh, a width that an edge cannot
- take: the place is the edge), WELT_ERROR_FILE, WELT_ERROR_RULE, WELT_ERROR_CANCELLED; the mesh is as it was before then.
- Since: 0.1.
+ take: the place is the edge), WELT_ERROR_FILE, WELT_ERROR_RULE (also, when strict, for marks that no rule handles),
+ WELT_ERROR_CANCELLED; the mesh is as it was before then. Since: 0.1.
  */
 WELT_API
 int32_t welt_feature_apply(welt_mesh *mesh,
@@ -1102,14 +1250,16 @@ int32_t welt_mesh_deviation(const welt_mesh *first,
  mesh: must not be NULL.
  faces: the faces whose surface is frozen, 0-based; NULL for all. Cost follows their number.
  count: number of faces; 0 where faces is NULL.
+ job: may be NULL.
  surface: receives the handle; free it with welt_surface_free.
 
- Fails with WELT_ERROR_ARGUMENT where a face does not exist. Since: 0.1.
+ Fails with WELT_ERROR_ARGUMENT where a face does not exist, and with WELT_ERROR_CANCELLED. Since: 0.1.
  */
 WELT_API
 int32_t welt_surface_create(const welt_mesh *mesh,
                             const uint32_t *faces,
                             size_t count,
+                            const welt_job *job,
                             welt_surface **surface,
                             welt_error **error);
 
@@ -1119,32 +1269,26 @@ int32_t welt_surface_create(const welt_mesh *mesh,
 WELT_API void welt_surface_free(welt_surface *surface);
 
 /*
- Evaluates the limit surface at parameters of faces.
+ Curvature of the limit surface at parameters of faces.
 
- surface: must not be NULL.
- faces: the face of each point.
- corners: the patch of each point; NULL for 0 everywhere. A quad has patch 0 only, another face one per corner.
- parameters: u and v of each point, in [0, 1]; what lies outside is moved to the nearest inside. On a quad (0, 0) is its
- first corner, u runs along the first edge and v against the last one. On patch c of another face (0, 0) is corner c,
- (1, 0) the middle of the edge that leaves it, (0, 1) that of the edge that arrives, (1, 1) the face point.
- count: number of points.
- values: receives per point the position, the derivatives by u and by v, and those by u twice, by u and v, by v twice: 18
- doubles. At an extraordinary vertex the first derivatives are tangents of conventional length, and the second ones,
- which are not defined, are NaN. Where the surface has no part of the face, which may not have been frozen or is a hole
- or left out by the boundary rule, all are NaN.
- capacity: room in values, at least 18 * count doubles.
+ surface, faces, corners, parameters, count: as for welt_surface_evaluate.
+ values: receives per point 10 doubles: the principal curvatures, the greater first; the unit tangents along which the normal
+ curvature takes these values; mean and Gaussian curvature. Curvature is positive where the surface bends towards its
+ normal: a sphere of radius r whose normals point outwards has -1/r, in units of the model. All are NaN at an extraordinary vertex, where curvature is
+ not defined, where the tangents span no plane, and where the surface has no part of the face.
+ capacity: room in values, at least 10 * count doubles.
 
  Fails with WELT_ERROR_ARGUMENT where a face has no such patch, or a parameter is NaN. Since: 0.1.
  */
 WELT_API
-int32_t welt_surface_evaluate(const welt_surface *surface,
-                              const uint32_t *faces,
-                              const uint32_t *corners,
-                              const double *parameters,
-                              size_t count,
-                              double *values,
-                              size_t capacity,
-                              welt_error **error);
+int32_t welt_surface_curvature(const welt_surface *surface,
+                               const uint32_t *faces,
+                               const uint32_t *corners,
+                               const double *parameters,
+                               size_t count,
+                               double *values,
+                               size_t capacity,
+                               welt_error **error);
 
 /*
  Moves vertices so that their limit points lie on a frozen surface.
@@ -1169,6 +1313,151 @@ int32_t welt_mesh_fit(welt_mesh *mesh,
                       const welt_job *job,
                       welt_report **report,
                       welt_error **error);
+
+/*
+ Sets options to their defaults. options: must not be NULL. size: sizeof *options. Fails with WELT_ERROR_ARGUMENT where the
+ size is none that the library knows. Since: 0.1.
+ */
+WELT_API
+int32_t welt_batch_options_init(welt_batch_options *options,
+                                size_t size);
+
+/*
+ Evaluates the limit surface at parameters of faces.
+
+ surface: must not be NULL.
+ faces: the face of each point.
+ corners: the patch of each point; NULL for 0 everywhere. A quad has patch 0 only, another face one per corner.
+ parameters: u and v of each point, in [0, 1]; what lies outside is moved to the nearest inside. On a quad (0, 0) is its
+ first corner, u runs along the first edge and v against the last one. On patch c of another face (0, 0) is corner c,
+ (1, 0) the middle of the edge that leaves it, (0, 1) that of the edge that arrives, (1, 1) the face point.
+ count: number of points.
+ derivatives: up to which order, 0 to 2.
+ options: threads and strides; NULL for the defaults.
+ values: receives per point the position, with order 1 also the derivatives by u and by v, with order 2 also those by u
+ twice, by u and v, by v twice: 3, 9 or 18 doubles. At an extraordinary vertex the first derivatives are tangents of
+ conventional length, and the second ones, which are not defined, are NaN. Where the surface has no part of the face, which
+ may not have been frozen or is a hole or left out by the boundary rule, all are NaN.
+ capacity: room in values, in doubles up to the end of the last point.
+
+ Points that are sorted by face cost less on large surfaces. Fails with WELT_ERROR_ARGUMENT where a face has no such patch,
+ or a parameter is NaN. Since: 0.1.
+ */
+WELT_API
+int32_t welt_surface_evaluate(const welt_surface *surface,
+                              const uint32_t *faces,
+                              const uint32_t *corners,
+                              const double *parameters,
+                              size_t count,
+                              uint32_t derivatives,
+                              const welt_batch_options *options,
+                              double *values,
+                              size_t capacity,
+                              welt_error **error);
+
+/*
+ Finds the point of the surface that is closest to each of many points, exactly: also beside extraordinary vertices,
+ creases and boundaries.
+
+ surface: must not be NULL.
+ points: x, y and z of each point.
+ count: number of points.
+ radius: points of the surface at this distance and farther are not found; infinity for no limit.
+ starts: per point a place of the surface near which the closest point is thought to be, of which face, corner, u and v are
+ read; the result is the same, sooner where the thought is right. NULL where there are none; one that is no place of the
+ surface is passed over.
+ options: threads and the stride of points; NULL for the defaults.
+ found: receives the closest points. Where nothing lies within the radius, where the surface is empty and where a
+ coordinate is NaN or beyond 1e60 the face is WELT_NONE. Of several points that are equally close one is found.
+ capacity: room in found, at least count elements.
+
+ Fails with WELT_ERROR_ARGUMENT where radius is NaN. Since: 0.1.
+ */
+WELT_API
+int32_t welt_surface_closest(const welt_surface *surface,
+                             const double *points,
+                             size_t count,
+                             double radius,
+                             const welt_surface_point *starts,
+                             const welt_batch_options *options,
+                             welt_surface_point *found,
+                             size_t capacity,
+                             welt_error **error);
+
+/*
+ Measures the distance of each of many points to a closed surface, negative inside.
+
+ surface: must not be NULL.
+ points: x, y and z of each point.
+ count: number of points.
+ options: threads and strides; NULL for the defaults.
+ distances: receives the distances; NaN where a coordinate is NaN or beyond 1e60.
+ capacity: room in distances, in doubles up to the last distance.
+
+ Fails with WELT_ERROR_ARGUMENT where the surface has a border: not all faces of a closed mesh are frozen, or some have no
+ surface. Since: 0.1.
+ */
+WELT_API
+int32_t welt_surface_signed_distances(const welt_surface *surface,
+                                      const double *points,
+                                      size_t count,
+                                      const welt_batch_options *options,
+                                      double *distances,
+                                      size_t capacity,
+                                      welt_error **error);
+
+/*
+ Finds the first point in which each of many lines meets the surface, exactly: edges and vertices let nothing through.
+
+ surface: must not be NULL.
+ lines: x, y and z of the origin and of the direction of each line, which need not have length 1.
+ count: number of lines.
+ first: smallest parameter s that counts: 0 for rays, minus infinity for whole lines.
+ last: largest parameter s that counts.
+ options: threads and the stride of lines; NULL for the defaults.
+ found: receives per line the hit with the smallest amount of s. Where there is none, where the direction is 0 and where a
+ coordinate is not finite the face is WELT_NONE.
+ capacity: room in found, at least count elements.
+
+ A line that touches the surface without crossing it hits it there, within the rounding of the coordinates. Fails with
+ WELT_ERROR_ARGUMENT where first or last is NaN. Since: 0.1.
+ */
+WELT_API
+int32_t welt_surface_first_hits(const welt_surface *surface,
+                                const double *lines,
+                                size_t count,
+                                double first,
+                                double last,
+                                const welt_batch_options *options,
+                                welt_surface_point *found,
+                                size_t capacity,
+                                welt_error **error);
+
+/*
+ Finds all points in which each of many lines meets the surface.
+
+ surface, lines, count, first, last, options: as for welt_surface_first_hits.
+ starts: receives count + 1 numbers: the hits of line i are those from starts[i] up to starts[i + 1], exclusive, by s.
+ needed: receives the number of all hits, also where found has no room for them. May be NULL.
+ found: receives the hits. NULL with capacity 0 to ask for their number.
+ capacity: room in found.
+
+ A hit on an edge that faces share, or at a vertex, is given once. A line that lies in the surface gives some of the points
+ that they share. Fails with WELT_ERROR_BUFFER where found is too small: then needed is written, and nothing else; and with
+ WELT_ERROR_ARGUMENT where first or last is NaN. Since: 0.1.
+ */
+WELT_API
+int32_t welt_surface_all_hits(const welt_surface *surface,
+                              const double *lines,
+                              size_t count,
+                              double first,
+                              double last,
+                              const welt_batch_options *options,
+                              size_t *starts,
+                              size_t *needed,
+                              welt_surface_point *found,
+                              size_t capacity,
+                              welt_error **error);
 
 #ifdef __cplusplus
 }

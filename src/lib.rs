@@ -10,6 +10,7 @@
 //!
 //! [`picture`] and [`ffi`] (the C ABI) stand on top; nothing imports them.
 
+mod fault;
 pub mod feature;
 pub mod ffi;
 pub mod gml;
@@ -22,3 +23,4 @@ pub mod optimise;
 pub mod picture;
 pub mod subdivision;
 pub mod surface;
+mod threads;

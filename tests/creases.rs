@@ -285,7 +285,7 @@ fn boundary_rules_and_holes() {
     assert_close(middle.position, DVec3::new(0.25, 0.75, 0.0), "a bilinear square");
     mesh.set_subdivision(with(BoundaryRule::None));
     assert!(
-        !has_limit(&mesh, face) && corner(&mesh).is_none() && LimitSurface::new(&mesh).faces().len() == 0
+        !has_limit(&mesh, face) && corner(&mesh).is_none() && LimitSurface::new(&mesh).faces().count() == 0
     );
     let edges: Vec<_> = mesh.edges().collect();
     edges.into_iter().for_each(|h| mesh.set_edge_sharpness(h, 10.0));

@@ -277,6 +277,35 @@ fn euler_operators_and_moves() {
 }
 
 #[test]
+fn a_face_is_tiled() {
+    // A face of the cube becomes five quads round a smaller one; the corners are vertices, the rest numbers of points.
+    let script = "usereg [ 0 1 3 { !i e :i faceCCW source } for ] !V
+        e [ 0 1 3 { !i :V :i get vertexpos e facemidpoint 0.5 lerp } for ]
+        [ 0 1 3 { !i [ :V :i get :V :i 1 add get :i 1 add 4 mod :i ] } for [ 0 1 2 3 ] ] makeFaces length";
+    let mut mesh = cube();
+    assert_eq!(run_on(&mut mesh, script).as_deref(), Ok("4"));
+    assert_eq!(mesh.counts(), [12, 20, 10]);
+    mesh.validate_control_mesh().expect("a control mesh");
+    // A face that is left out, a point that is not used, what is no corner.
+    let misfit = "does not fit to the rest; the faces must cover the old face once, counter-clockwise, and use every point [makeFaces]";
+    let corners = "e source e 1 faceCCW source e 2 faceCCW source e 3 faceCCW source";
+    for (points, faces, face) in [
+        ("", format!("[ [ {corners} 0 ] ]"), 0),
+        ("(0,0,0)", format!("[ [ {corners} ] ]"), 0),
+        ("(0,0,0)", "[ [ e source e 1 faceCCW source 0 ] ]".to_owned(), 0),
+        ("", String::from("[ [ e source e 2 faceCCW source e 1 faceCCW source ] ]"), 0),
+    ] {
+        let message = format!("makeFaces: face {face} of the tiling, counted from 0, {misfit}");
+        fails(&format!("e [ {points} ] {faces} makeFaces"), &message);
+    }
+    fails("e [ 1 ] [ ] makeFaces", "makeFaces needs an array of points [makeFaces]");
+    fails(
+        "e [ ] [ [ 0.5 ] ] makeFaces",
+        "makeFaces needs an array of faces, each an array of vertices and of numbers of points [makeFaces]",
+    );
+}
+
+#[test]
 fn attributes_and_links() {
     gives("e \"n\" 5 attrset e \"n\" attrget e /n attrhas e \"m\" attrhas", "5 1 0");
     gives("e /s \"red\" attrset e /s attrget \"red\" eq", "1");
@@ -402,6 +431,7 @@ const TOKENS: &[&str] = &[
     "makeEV",
     "makeEF",
     "makeEVone",
+    "makeFaces",
     "makeVEFS",
     "killEF",
     "killEV",

@@ -83,7 +83,7 @@ fn corners_of_any_number_of_lines() {
 
 #[test]
 fn crossings_of_different_numbers_of_lines() {
-    for (columns, rows) in [(1, 1), (3, 3), (5, 3), (2, 4), (1, 5)] {
+    for (columns, rows) in [(1, 1), (3, 3), (2, 3), (2, 4), (1, 5)] {
         let mut mesh = sheet();
         for k in 0..=SIDE {
             mark(&mut mesh, k as usize, (2, k), (3, k), columns);
@@ -107,16 +107,5 @@ fn crossings_of_different_numbers_of_lines() {
             .collect();
         grid.sort_unstable();
         assert_eq!(found, grid, "{columns} x {rows}");
-    }
-}
-
-#[test]
-fn the_dead_end_is_for_three_lines_and_leaves_others_alone() {
-    for (lines, inner, others) in [(3, 5, vec![3]), (2, 0, vec![7 - 1]), (5, 0, vec![9])] {
-        let mut mesh = sheet();
-        for j in 0..=2 {
-            mark(&mut mesh, j as usize, (2, j), (3, j), lines);
-        }
-        assert_eq!(run(&mut mesh), (3 * lines + inner, others), "{lines} lines");
     }
 }

@@ -145,6 +145,41 @@ fn parameters_that_a_feature_cannot_take() {
 }
 
 #[test]
+fn marks_that_no_rule_handles_are_said_or_refused() {
+    // Three lines and five meet in the corner of face 0.
+    let folder = Folder::new("unresolved");
+    let marks = ["--mark", "edge:0,1", "--mark", "edge:1,5#piping", "--no-deviation"];
+    let strict = [&marks[..], &["--strict"]].concat();
+    folder.groove(&strict).fails(1, &["no rule handles", "edges 0,1 1,5;", "without strict"]);
+    assert_eq!(folder.files(), ["sheet.obj"]);
+    let run = folder.groove(&[&marks[..], &["--figure", "figure.png"]].concat()).succeeds();
+    for mark in ["marked at 0,1#groove; no rule", "marked at 1,5#piping; no rule"] {
+        assert!(run.out.contains(mark), "{}", run.out);
+    }
+    assert_eq!(folder.files(), ["figure.png", "out.obj", "sheet.obj"]);
+}
+
+#[test]
+fn an_odd_face_gets_a_line_or_an_irregular_face() {
+    let folder = Folder::new("parity");
+    let groove = |more: &[&str]| {
+        folder.groove(&[&["--mark", "edge:1,2", "--no-deviation"], more].concat()).succeeds().out
+    };
+    let triangles = || {
+        let is_triangle = |line: &&str| line.starts_with("f ") && line.split(' ').count() == 4;
+        folder.read("out.obj").lines().filter(is_triangle).count()
+    };
+    // The dead end goes on through the face behind it to the border.
+    let report = groove(&[]);
+    assert!(report.contains("1 odd faces, 1 lines with 2 vertices and 0 turns"), "{report}");
+    assert_eq!(triangles(), 2, "those of the sheet");
+    let report = groove(&["--parity", "local"]);
+    assert!(report.contains("1 faces stay odd (first: 1): no lines were asked for"), "{report}");
+    assert_eq!(triangles(), 3, "and the one that closes the dead end");
+    folder.groove(&["--mark", "edge:1,2", "--parity", "none"]).fails(2, &["all-quad"]);
+}
+
+#[test]
 fn a_typo_in_a_rule_file() {
     let folder = Folder::new("rules");
     fs::write(folder.0.join("typo.rules"), "% a comment\nruel x {\n}\n").unwrap();
@@ -346,6 +381,19 @@ fn two_runs_write_the_same_bytes() {
     run("first.obj");
     run("second.obj");
     assert_eq!(folder.read("first.obj"), folder.read("second.obj"));
+}
+
+#[test]
+fn quality_and_reflection_lines() {
+    let folder = Folder::new("quality");
+    let text = folder.welt(&["quality", "sheet.obj", "--worst", "1"]).succeeds().out;
+    // The triangles' longest edge is their diagonal.
+    assert!(text.contains("extraordinary vertices:") && text.contains("3 edges  1.41"), "{text}");
+    let json = folder.welt(&["quality", "sheet.obj", "--json"]).succeeds().out;
+    assert!(json.contains("\"median_aspect\": 1.0") && json.contains("\"extraordinary\""), "{json}");
+    folder.welt(&["limit", "sheet.obj", "-o", "out.obj", "--zebra", "absent/z.png"]).fails(1, &["absent"]);
+    folder.welt(&["limit", "sheet.obj", "-o", "out.obj", "--zebra", "z.png"]).succeeds();
+    assert!(fs::read(folder.0.join("z.png")).unwrap().starts_with(b"\x89PNG"));
 }
 
 #[test]

@@ -194,9 +194,9 @@ fn attributes_that_nobody_brings_or_takes_away() {
 
 #[test]
 fn the_project_s_rules_have_no_warnings_and_drawings() {
-    let folder = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("rules");
-    for entry in std::fs::read_dir(folder).expect("the rules") {
-        let set = RuleSet::load(&entry.expect("an entry").path()).expect("rules");
+    for name in ["linear", "patches"] {
+        let path = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("rules").join(name).with_extension("rules");
+        let set = RuleSet::load(&path).expect("rules");
         let warnings: Vec<String> = set.warnings().iter().map(ToString::to_string).collect();
         assert!(warnings.is_empty(), "{}", warnings.join("\n"));
         for rule in set.rules() {

@@ -429,6 +429,56 @@ fn parameters_have_defaults_ranges_and_names() {
     assert_eq!(error("height", f64::NAN), "parameter `height` is NaN; it must lie in [0.5, 10]");
 }
 
+/// Definitions are words for the scripts below them, with registers of their own; parameters are known in them, nodes not.
+#[test]
+fn definitions() {
+    let parse = |text: &str| RuleSet::parse("d.rules", text, &|_| None);
+    let text = "parameter p 3 range 0 9 unit count \"h\"
+        define twice { usereg !x :x :x add }
+        define more { twice twice p add }
+        rule A { e(go) } where { 1 more 7 eq } action { usereg 5 !x  e \"go\" attrdel  e \"n\" 1 more :x add attrset }";
+    let mut mesh = grid(1);
+    mark(&mut mesh, 0, 1, "go", Value::Number(1.0));
+    run(text, &mut mesh).expect("runs");
+    let e = mesh.find_half_edge(VertexId(0), VertexId(1)).expect("the edge exists");
+    assert_eq!(mesh.attribute_named(Node::HalfEdge(e), "n"), Some(&Value::Number(12.0)));
+
+    let message = |text: &str| {
+        let error = parse(text).expect_err("a mistake");
+        let first = &error.diagnostics[0];
+        format!("{} {}", first.line, first.message)
+    };
+    assert_eq!(message("define a { b }\ndefine b { 1 }"), "1 unknown word `b`");
+    assert_eq!(message("define a { a }"), "1 unknown word `a`");
+    assert_eq!(message("define a { 1 }\ndefine a { 2 }"), "2 `a` is defined twice");
+    assert!(message("define add { 1 }").starts_with("1 `add` is a word of the language"));
+    assert_eq!(
+        message("define a { 1 }\nrule R { a } action { }"),
+        "2 `a` is defined above; a node needs another name"
+    );
+    assert_eq!(
+        message("define a { :x }\nrule R { e } action { usereg 1 !x a pop }"),
+        "1 register `x` needs `usereg` at the beginning of the script"
+    );
+    // What a definition does to the stack is checked where it is used.
+    assert_eq!(
+        message("define a { pop pop }\nrule R { e } action { 1 a }"),
+        "2 `pop` needs more values than there are on the stack"
+    );
+    // A definition that a condition uses may not change the mesh.
+    assert!(
+        message("define a { e \"n\" attrdel }\nrule R { e } where { 1 } action { }")
+            .contains("unknown word `e`")
+    );
+    assert!(
+        message("define a { \"n\" attrdel }\nrule R { e } where { e a 1 } action { }")
+            .contains("changes the mesh; a condition may only look at it")
+    );
+    // Definitions that use one another twice do not grow.
+    let doubled: String = (1..60).map(|i| format!("define d{i} {{ d{} d{} }}\n", i - 1, i - 1)).collect();
+    parse(&format!("define d0 {{ }}\n{doubled} rule R {{ e(go) }} action {{ d59 }}")).expect("read at once");
+}
+
 #[test]
 fn includes_are_read_once_and_relative_to_their_file() {
     let files = BTreeMap::from([
@@ -579,7 +629,7 @@ fn mistakes_at_load() {
     refused(
         "rul A { a }",
         &[
-            "1:1 `rul` has no meaning here; expected `example` or `include` or `input` or `parameter` or `phase` or `rule` or `straight` [rul]",
+            "1:1 `rul` has no meaning here; expected `define` or `example` or `include` or `input` or `parameter` or `phase` or `rule` or `straight` [rul]",
         ],
     );
     refused(
@@ -672,6 +722,7 @@ const TOKENS: &[&str] = &[
     "e",
     "parameter p 1 range 0 2 unit u \"h\"",
     "include \"t\"",
+    "define",
     "\"",
     "%",
     "\n",

@@ -8,6 +8,7 @@ use std::path::Path;
 use welt::io::{ImportOptions, import};
 use welt::mesh::{FaceId, Mesh};
 use welt::subdivision::evaluate;
+use welt::surface::{Derivatives, LimitSurface, Parameter};
 
 fn load(data: &Path, file: &str) -> Mesh {
     import(&data.join(file), &ImportOptions::default()).expect("a clean mesh").mesh
@@ -303,4 +304,50 @@ fn missing_patches_and_nan_give_nothing() {
     assert!(evaluate(&mesh, FaceId(0), 0, f64::NAN, 0.5).is_none());
     let clamped = evaluate(&mesh, FaceId(0), 0, 7.0, -1.0).expect("a point");
     assert_eq!(Some(clamped), evaluate(&mesh, FaceId(0), 0, 1.0, 0.0));
+}
+
+/// A batch is done by the widest instructions of the machine, single points by those that all machines have.
+#[test]
+fn batches_are_the_same_to_the_last_bit() {
+    let Some(data) = common::shared_data() else { return };
+    let mut extraordinary = 0;
+    for file in ["osd/catmark_car.obj", "upholstery/q_chair_cushioned.obj", "product/sc_jar_cage.obj"] {
+        let mesh = load(&data, file);
+        let surface = LimitSurface::new(&mesh);
+        let mut at = Vec::new();
+        for face in surface.faces() {
+            for corner in 0..surface.patch_count(face) as u32 {
+                let inner = (0..6).map(|i| ((0.618034 * i as f64).fract(), (0.754878 * i as f64).fract()));
+                at.extend(inner.map(|(u, v)| Parameter { face, corner, u, v }));
+            }
+        }
+        at.push(Parameter { face: FaceId(u32::MAX), corner: 0, u: 0.5, v: 0.5 });
+        for (order, width) in [(Derivatives::None, 3), (Derivatives::First, 9), (Derivatives::Second, 18)] {
+            let mut compared = 0;
+            surface.evaluate_all(
+                0..at.len(),
+                order,
+                |i| at[i],
+                |i, values| {
+                    assert_eq!((i, values.len()), (compared, width));
+                    compared += 1;
+                    let Parameter { face, corner, u, v } = at[i];
+                    let Some(point) = surface.evaluate(face, corner as usize, u, v) else {
+                        return assert!(values.iter().all(|x| x.is_nan()));
+                    };
+                    extraordinary += u32::from(point.second.is_none());
+                    let second =
+                        point.second.map_or([DVec3::NAN; 3], |second| [second.uu, second.uv, second.vv]);
+                    let expected = [point.position, point.du, point.dv].into_iter().chain(second);
+                    let expected = expected.flat_map(|vector| vector.to_array());
+                    assert!(
+                        values.iter().zip(expected).all(|(a, b)| a.to_bits() == b.to_bits()),
+                        "{file} {i}"
+                    );
+                },
+            );
+            assert_eq!(compared, at.len());
+        }
+    }
+    assert!(extraordinary > 10);
 }

@@ -267,7 +267,7 @@ fn height_fields_of_a_quadratic_are_that_quadratic() {
     let inner: Vec<FaceId> =
         mesh.faces().filter(|&f| mesh.face_vertices(f).all(|v| !mesh.is_boundary_vertex(v))).collect();
     let surface = LimitSurface::around(&mesh, &inner);
-    assert_eq!(surface.faces().len(), 64);
+    assert_eq!(surface.faces().count(), 64);
     let height = |x: f64, y: f64| 0.1 * (x * x - 2.0 * y * y + x * y - 1.0 / 3.0);
     let mut random = Random(5);
     for _ in 0..500 {

@@ -1,6 +1,6 @@
 //! `welt apply`.
 
-use super::args::{Apply, FitMethod};
+use super::args::{Apply, FitMethod, Parity};
 use super::error::Failure;
 use super::figure::{View, draw, limit_picture};
 use super::files;
@@ -12,7 +12,7 @@ use std::sync::Arc;
 use welt::feature::{Options, ProfileError, Request, RequestError};
 use welt::grammar::{RuleSet, Trace, Tracer};
 use welt::io;
-use welt::mark::{Selection, Selector};
+use welt::mark::{Selection, Selector, parity};
 use welt::optimise::Method;
 use welt::surface::SAMPLES;
 
@@ -105,7 +105,15 @@ fn options(arguments: &Apply) -> Result<Options, Failure> {
             FitMethod::None => Method::None,
             FitMethod::Loop => Method::Loop,
             FitMethod::Solve => Method::Solve,
+            FitMethod::Fit => Method::Fit,
+            FitMethod::FitSlide => Method::FitSlide,
         },
+        parity: match arguments.parity {
+            Parity::Auto => parity::Mode::Auto,
+            Parity::AllQuad => parity::Mode::AllQuad,
+            Parity::Local => parity::Mode::Local,
+        },
+        strict: arguments.strict,
         samples: if arguments.no_deviation { 0 } else { SAMPLES },
         threads: arguments.threads,
         tracer: tracer(arguments)?,

@@ -22,6 +22,8 @@ pub enum Command {
     Limit(Limit),
     /// Measure how far the limit surfaces of two control meshes are apart
     Deviation(Deviation),
+    /// Tell where extraordinary vertices sit, how much curvature varies round them, and which faces are worst
+    Quality(Quality),
     /// Check, test or list rule files
     Rules(Rules),
     /// Make example features on chairs: control meshes, limit surfaces, reports, figures
@@ -88,6 +90,21 @@ pub enum FitMethod {
     Loop,
     /// The sparse system that iteration converges to
     Solve,
+    /// Least squares of distance and slope over the surface
+    Fit,
+    /// The same; vertices that were there before may slide along the surface
+    #[value(name = "fit+slide")]
+    FitSlide,
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+pub enum Parity {
+    /// A line of vertices to the border or between two of them where the way is short
+    Auto,
+    /// Lines wherever there is a way, also to triangles and pentagons of the mesh
+    AllQuad,
+    /// One irregular face each
+    Local,
 }
 
 #[derive(Args)]
@@ -110,8 +127,14 @@ pub struct Apply {
     #[arg(long = "set", value_name = "[KIND.]NAME=VALUE")]
     pub set: Vec<String>,
     /// How to fit the changed mesh to the surface as it was
-    #[arg(long, value_enum, default_value = "solve")]
+    #[arg(long, visible_alias = "method", value_enum, default_value = "solve")]
     pub optimise: FitMethod,
+    /// What to do about faces that the marks leave with an odd number of sides
+    #[arg(long, value_enum, default_value = "auto")]
+    pub parity: Parity,
+    /// Fail where no rule handles a mark, instead of keeping the mark and applying the rest
+    #[arg(long)]
+    pub strict: bool,
     /// Write a report as JSON
     #[arg(long, value_name = "FILE")]
     pub report: Option<PathBuf>,
@@ -147,6 +170,23 @@ pub struct Limit {
     /// How often to refine; 0 moves the control vertices themselves, in their order
     #[arg(long, default_value_t = 2, value_parser = clap::value_parser!(u8).range(0..=10))]
     pub level: u8,
+    /// Draw the surface with reflection lines, which show unevenness that shading hides
+    #[arg(long, value_name = "FILE.png")]
+    pub zebra: Option<PathBuf>,
+    #[command(flatten)]
+    pub import: Import,
+}
+
+#[derive(Args)]
+pub struct Quality {
+    /// OBJ or PLY file, or - for OBJ on standard input
+    pub input: PathBuf,
+    /// How many of the worst are listed
+    #[arg(long, value_name = "N", default_value_t = 10)]
+    pub worst: usize,
+    /// Print JSON, with all extraordinary vertices
+    #[arg(long)]
+    pub json: bool,
     #[command(flatten)]
     pub import: Import,
 }

@@ -64,6 +64,14 @@ pub struct View {
     pub zoom: Option<f64>,
 }
 
+const ABOVE_IN_FRONT: DVec3 = DVec3::new(0.5, 0.45, 1.0);
+
+/// Which of y and z is up, by where the model reaches further.
+fn up(mesh: &Mesh) -> DVec3 {
+    let extent = mesh.positions().iter().fold(DVec3::ZERO, |a, p| a.max(p.abs()));
+    if extent.y >= extent.z { DVec3::Y } else { DVec3::Z }
+}
+
 impl View {
     /// Looks at the feature against its mean normal.
     pub fn of_feature(after: &Mesh, report: &Report, limit: &LimitPicture) -> Self {
@@ -72,11 +80,9 @@ impl View {
             .iter()
             .filter_map(|&v| limit.normals.get(v as usize))
             .fold(DVec3::ZERO, |sum, n| sum + *n);
-        let extent = after.positions().iter().fold(DVec3::ZERO, |a, p| a.max(p.abs()));
         // A ring's normals cancel: look at it from above and in front then.
-        let viewer =
-            if sum.length() > 0.2 * report.green.len() as f64 { sum } else { DVec3::new(0.5, 0.45, 1.0) };
-        let up = if extent.y >= extent.z { DVec3::Y } else { DVec3::Z };
+        let viewer = if sum.length() > 0.2 * report.green.len() as f64 { sum } else { ABOVE_IN_FRONT };
+        let up = up(after);
         Self { viewer: viewer.normalize_or(DVec3::Z) + 0.35 * up, up, zoom: None }
     }
 }
@@ -147,6 +153,22 @@ pub fn draw(title: &str, after: &Mesh, report: &Report, limit: &LimitPicture, vi
         height: 640,
     }
     .render()
+}
+
+/// The limit surface of `mesh` with reflection lines.
+pub fn reflection_lines(mesh: &Mesh) -> Result<Image, Failure> {
+    let level = drawing_level(mesh.face_bound());
+    let (polygons, normals) = limit_mesh_with_normals(&Refinement::new(mesh, level)?, mesh, level)?;
+    let shape = Shape {
+        positions: &polygons.positions,
+        face_sizes: &polygons.face_sizes,
+        face_vertices: &polygons.face_vertices,
+    };
+    let content = Content::Surface { shape, normals: &normals, finish: Finish::ReflectionLines };
+    let up = up(mesh);
+    let camera = Camera::framing(&polygons.positions, ABOVE_IN_FRONT + 0.35 * up, up);
+    let panels = vec![Panel { content, caption: "limit surface, reflection lines" }];
+    Ok(Figure { title: "", panels, camera, width: 1000, height: 1000 }.render())
 }
 
 fn dimensions(report: &Report) -> String {

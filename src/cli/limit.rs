@@ -2,6 +2,7 @@
 
 use super::args::Limit;
 use super::error::Failure;
+use super::figure;
 use super::files;
 use super::output::print;
 use glam::DVec3;
@@ -12,8 +13,15 @@ use welt::subdivision::{Refinement, limit_points, limit_positions};
 
 pub fn run(arguments: &Limit) -> Result<ExitCode, Failure> {
     files::check_mesh_output(&arguments.output)?;
+    if let Some(file) = &arguments.zebra {
+        files::check_output(file)?;
+    }
     let mesh = files::import(&arguments.input, &arguments.import)?;
     let level = usize::from(arguments.level);
+    if let Some(file) = &arguments.zebra {
+        let image = figure::reflection_lines(&mesh)?;
+        welt::io::save(file, |out| image.write_png(out))?;
+    }
     if files::is_standard(&arguments.output) {
         let polygons = limit_mesh(&mesh, level)?;
         print(|out| io::obj::write(&polygons, out))?;

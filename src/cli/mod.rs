@@ -12,6 +12,7 @@ mod files;
 mod limit;
 mod output;
 mod progress;
+mod quality;
 mod rules;
 
 use args::{Arguments, Command};
@@ -26,6 +27,7 @@ pub fn run() -> ExitCode {
         Command::Apply(apply) => apply::run(apply),
         Command::Limit(limit) => limit::run(limit),
         Command::Deviation(deviation) => deviation::run(deviation),
+        Command::Quality(quality) => quality::run(quality),
         Command::Rules(rules) => rules::run(rules),
         Command::Demo(demo) => demo::run(demo),
     };

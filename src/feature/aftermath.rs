@@ -1,13 +1,14 @@
 //! What a run of rules leaves behind: leftovers, working attributes, and which faces it touched.
 
 use super::displace::LineVertex;
-use super::report::Leftover;
+use super::report::{Leftover, LeftoverMark};
 use crate::mark;
 use crate::mesh::{Domain, FaceId, HalfEdgeId, Mesh, Node, Value, VertexId};
 use std::collections::BTreeMap;
 
 /// Turns what the rules left over into the attribute `unresolved`, and takes the working attributes away.
-pub(super) fn settle(mesh: &mut Mesh, has_features: bool) -> Vec<Leftover> {
+/// `edges` are the marked edges by number of the mark.
+pub(super) fn settle(mesh: &mut Mesh, has_features: bool, edges: &[(u32, u32)]) -> Vec<Leftover> {
     let waiting = if has_features { "places" } else { "color" };
     let waiting = mesh.intern(waiting);
     let mut half_edges: Vec<HalfEdgeId> =
@@ -15,11 +16,17 @@ pub(super) fn settle(mesh: &mut Mesh, has_features: bool) -> Vec<Leftover> {
     half_edges.retain(|&h| mesh.has_half_edge(h) && !mesh.face(h).is_boundary());
     let unresolved = mesh.intern("unresolved");
     let kind = mesh.intern(if has_features { "kind" } else { "color" });
-    let mut marks: BTreeMap<FaceId, usize> = BTreeMap::new();
+    let mut marks: BTreeMap<FaceId, Vec<LeftoverMark>> = BTreeMap::new();
     for &h in &half_edges {
-        *marks.entry(mesh.face(h)).or_default() += 1;
         let kind = mesh.attribute(Node::HalfEdge(h), kind).cloned();
         let kind = kind.unwrap_or_else(|| Value::text(mark::DEFAULT_KIND));
+        // The mark is known by its first vertex where the edge was split.
+        let number = mesh.attribute_named(Node::Vertex(mesh.target(h)), "mark").and_then(Value::as_number);
+        let split = number.filter(|_| has_features).and_then(|number| edges.get(number as usize).copied());
+        marks.entry(mesh.face(h)).or_default().push(LeftoverMark {
+            edge: split.unwrap_or((mesh.source(h).0, mesh.target(h).0)),
+            kind: kind.as_text().unwrap_or_default().to_owned(),
+        });
         mesh.set_attribute(Node::HalfEdge(h), unresolved, Some(kind));
     }
     for (domain, names) in [

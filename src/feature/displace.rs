@@ -6,6 +6,7 @@
 
 use super::request::Feature;
 use super::section::Section;
+use crate::fault;
 use crate::mesh::{Domain, Mesh, Node, Value, VertexId};
 use crate::optimise::{LeastSquares, Row};
 use crate::subdivision::{limit_mask, limit_normal, limit_position};
@@ -178,6 +179,7 @@ pub fn raise(mesh: &mut Mesh, heights: &[(VertexId, f64)]) -> Vec<VertexId> {
 
 /// Moves the green vertices along their normals so that their limit points reach the targets.
 pub(super) fn displace(mesh: &mut Mesh, greens: &[Green]) {
+    fault::point("displace");
     let unknowns: FxHashMap<VertexId, u32> = greens
         .iter()
         .filter(|green| green.hold.is_none())
@@ -206,6 +208,7 @@ pub(super) fn displace(mesh: &mut Mesh, greens: &[Green]) {
         let heights = system.solve(targets.into_iter());
         for (green, height) in free.iter().zip(heights) {
             mesh.set_position(green.vertex, mesh.position(green.vertex) + green.normal * height);
+            fault::point("displace");
         }
     }
     for (v, shift) in held_in_order(greens, &held) {

@@ -9,7 +9,7 @@ use super::report::Report;
 use super::{FeatureError, Options, Request, deviation};
 use crate::grammar;
 use crate::job::Job;
-use crate::mark::{self, Selection};
+use crate::mark::{self, Mark, Selection, parity};
 use crate::mesh::{FaceId, Mesh, Node, Value, VertexId};
 use crate::optimise::{self, FitReport, Target};
 use crate::subdivision::limit_normal;
@@ -17,9 +17,6 @@ use crate::surface::Sampling;
 use glam::DVec3;
 use rustc_hash::FxHashMap;
 
-/// Rings of faces around the marked ones whose limit surface is frozen for the fit: the active vertices lie on the
-/// faces around the changed ones.
-const FIT_RINGS: usize = 2;
 /// Reached width or depth within this fraction of the asked one needs no correction.
 const GOOD_ENOUGH: f64 = 3e-3;
 /// Corrections at most. One is enough on even grids; where the length of the crossed edges jumps, the widths of
@@ -72,9 +69,11 @@ pub(super) struct Pass {
 
 impl Run<'_> {
     fn execute(&mut self, mesh: &mut Mesh, job: &Job) -> Result<Report, FeatureError> {
+        self.route_parity(mesh, job)?;
         let crossed = self.crossed_faces(mesh);
         let mut region = crossed.clone();
-        for _ in 0..FIT_RINGS {
+        // Rules change the faces around the crossed ones too.
+        for _ in 0..1 + self.options.method.frozen_rings() {
             region = mesh.grow_faces(&region);
         }
         let footprint = mesh.grow_faces(&crossed);
@@ -83,7 +82,7 @@ impl Run<'_> {
         let deepest = self.deepest();
         let reference = measured.then(|| deviation::Reference::freeze(mesh, &crossed, footprint, sampling));
         let walls = measured.then(|| deviation::Walls::around(mesh, &crossed, deepest));
-        let mut target = Target::freeze(mesh, &region);
+        let mut target = Target::freeze(mesh, &region, job)?;
         self.clock.lap("freeze");
 
         let mut corrections = 0;
@@ -98,7 +97,7 @@ impl Run<'_> {
                 // Rules reached further than the frozen surface: freeze more and start again.
                 mesh.rollback(checkpoint);
                 region = mesh.grow_faces(&wider);
-                target = Target::freeze(mesh, &region);
+                target = Target::freeze(mesh, &region, job)?;
                 continue;
             }
             let misses = self.misses(&pass);
@@ -126,11 +125,29 @@ impl Run<'_> {
         self.report(mesh, pass, corrections, reference.as_ref(), walls.as_ref(), job)
     }
 
+    /// Marks the edges that make odd faces even.
+    fn route_parity(&mut self, mesh: &Mesh, job: &Job) -> Result<(), FeatureError> {
+        if self.features.is_empty() {
+            return Ok(());
+        }
+        let mut marks = Vec::with_capacity(self.marks.len());
+        for (i, (mark, values)) in self.marks.iter().zip(&self.asked).enumerate() {
+            marks.push((mark.half_edge, self.cuts(mesh, i, values)?.len()));
+        }
+        let (marks, report) = parity::route(mesh, &marks, self.options.parity, job)?;
+        self.edges.extend(marks.iter().map(|m| (mesh.source(m.half_edge).0, mesh.target(m.half_edge).0)));
+        self.parity = marks;
+        self.parity_report = Some(report);
+        self.clock.lap("parity");
+        Ok(())
+    }
+
     /// The real faces beside the marked edges.
     fn crossed_faces(&self, mesh: &Mesh) -> Vec<FaceId> {
         let mut faces: Vec<FaceId> = self
             .marks
             .iter()
+            .chain(&self.parity)
             .flat_map(|mark| [mark.half_edge, mark.half_edge.mate()])
             .map(|h| mesh.face(h))
             .filter(|f| !f.is_boundary())
@@ -142,8 +159,9 @@ impl Run<'_> {
 
     /// The frozen faces and those that are missing among them, when the fit needs more than `region`.
     fn uncovered(&self, mesh: &Mesh, changed: &[FaceId], region: &[FaceId]) -> Option<Vec<FaceId>> {
-        let mut needed: Vec<FaceId> =
-            mesh.grow_faces(changed).into_iter().map(|f| mesh.original_face(f)).collect();
+        let rings = self.options.method.frozen_rings();
+        let needed = (0..rings).fold(changed.to_vec(), |faces, _| mesh.grow_faces(&faces));
+        let mut needed: Vec<FaceId> = needed.into_iter().map(|f| mesh.original_face(f)).collect();
         needed.sort_unstable();
         needed.dedup();
         needed.retain(|f| region.binary_search(f).is_err() && f.index() < self.first_face);
@@ -178,7 +196,7 @@ impl Run<'_> {
         self.clock.lap("rules");
 
         job.step("fit", 0.3)?;
-        let active = optimise::active_set(mesh, &changed);
+        let active = optimise::active_set(mesh, &changed, self.options.method);
         let fit = optimise::fit(mesh, &active, target, self.options.method, job)?;
         self.clock.lap("fit");
 
@@ -237,26 +255,13 @@ impl Run<'_> {
 
     fn place_marks(&self, mesh: &mut Mesh, aims: &[Vec<f64>]) -> Result<(), FeatureError> {
         mark::place(mesh, &self.marks);
-        let [cuts_name, lines_name, mark_name, color] =
-            ["cuts", "lines", "mark", "color"].map(|name| mesh.intern(name));
-        let skew = mesh.intern("skew");
         for (i, (mark, values)) in self.marks.iter().zip(aims).enumerate() {
-            let forward = self.cuts(mesh, i, values)?;
-            let lines: Vec<f64> = (1..=forward.len()).map(|line| line as f64).collect();
-            let backward: Vec<f64> = forward.iter().rev().map(|t| 1.0 - t).collect();
-            let kind = Value::text(&self.features[self.feature_of[i]].kind);
-            let h = mark.half_edge;
-            let reversed: Vec<f64> = lines.iter().rev().copied().collect();
-            for (h, cuts, lines) in [(h, forward, lines), (h.mate(), backward, reversed)] {
-                let node = Node::HalfEdge(h);
-                mesh.set_attribute(node, cuts_name, Some(Value::Numbers(cuts.into())));
-                mesh.set_attribute(node, lines_name, Some(Value::Numbers(lines.into())));
-                mesh.set_attribute(node, mark_name, Some(Value::Number(i as f64)));
-                mesh.set_attribute(node, color, Some(kind.clone()));
-                if mark.breadth.is_some() {
-                    mesh.set_attribute(node, skew, Some(Value::Number(1.0)));
-                }
-            }
+            let kind = &self.features[self.feature_of[i]].kind;
+            place_lines(mesh, mark, i, self.cuts(mesh, i, values)?, kind);
+        }
+        mark::place(mesh, &self.parity);
+        for (i, mark) in (self.marks.len()..).zip(&self.parity) {
+            place_lines(mesh, mark, i, vec![mark.t], &mark.kind);
         }
         Ok(())
     }
@@ -289,5 +294,26 @@ impl Run<'_> {
             })
             .map(|(&v, _)| v.0)
             .collect();
+    }
+}
+
+/// Writes on both sides of a marked edge where its lines lie.
+fn place_lines(mesh: &mut Mesh, mark: &Mark, number: usize, forward: Vec<f64>, kind: &str) {
+    let [cuts_name, lines_name, mark_name, color, skew] =
+        ["cuts", "lines", "mark", "color", "skew"].map(|name| mesh.intern(name));
+    let lines: Vec<f64> = (1..=forward.len()).map(|line| line as f64).collect();
+    let backward: Vec<f64> = forward.iter().rev().map(|t| 1.0 - t).collect();
+    let reversed: Vec<f64> = lines.iter().rev().copied().collect();
+    let kind = Value::text(kind);
+    let h = mark.half_edge;
+    for (h, cuts, lines) in [(h, forward, lines), (h.mate(), backward, reversed)] {
+        let node = Node::HalfEdge(h);
+        mesh.set_attribute(node, cuts_name, Some(Value::Numbers(cuts.into())));
+        mesh.set_attribute(node, lines_name, Some(Value::Numbers(lines.into())));
+        mesh.set_attribute(node, mark_name, Some(Value::Number(number as f64)));
+        mesh.set_attribute(node, color, Some(kind.clone()));
+        if mark.breadth.is_some() {
+            mesh.set_attribute(node, skew, Some(Value::Number(1.0)));
+        }
     }
 }

@@ -29,16 +29,37 @@ pub use length::{Length, significant};
 pub use linear::apply;
 pub use place::WidthError;
 pub use profile::{Height, Line, Parameter, Profile, ProfileError, Unit};
-pub use report::{Counts, Difference, Dimension, FeatureReport, Leftover, OffCurve, Report, Warning};
+pub use report::{
+    Counts, Difference, Dimension, FeatureReport, Leftover, LeftoverMark, OffCurve, Report, Warning,
+};
 pub use request::{Feature, FeatureError, Options, Request, RequestError};
 pub use settings::SettingError;
 
 use crate::grammar::{RuleSet, RulesError};
 
-/// The rules of linear features, `rules/linear.rules`.
+/// The rules of linear features, `rules/linear.rules` and what it includes.
 ///
 /// # Errors
 /// None in a library that was tested; kept so that a mistake in the file is a message and not a panic.
 pub fn linear_rules() -> Result<RuleSet, RulesError> {
-    crate::grammar::RuleSet::parse("linear.rules", include_str!("../../rules/linear.rules"), &|_| None)
+    macro_rules! file {
+        ($name:literal) => {
+            include_str!(concat!("../../rules/", $name))
+        };
+    }
+    let included = |file: &str| {
+        let text = match file {
+            "split.rules" => file!("split.rules"),
+            "sides.rules" => file!("sides.rules"),
+            "crossings.rules" => file!("crossings.rules"),
+            "bands.rules" => file!("bands.rules"),
+            "parity.rules" => file!("parity.rules"),
+            "tees.rules" => file!("tees.rules"),
+            "ends.rules" => file!("ends.rules"),
+            "meets.rules" => file!("meets.rules"),
+            _ => return None,
+        };
+        Some(text.to_owned())
+    };
+    RuleSet::parse("linear.rules", file!("linear.rules"), &included)
 }

@@ -9,7 +9,7 @@ use super::report::Counts;
 use super::request::{Feature, feature_of};
 use super::section::Section;
 use super::{FeatureError, Options, Request};
-use crate::mark::{Mark, Selection, orient};
+use crate::mark::{Mark, Selection, orient, parity};
 use crate::mesh::{Mesh, VertexId};
 use glam::DVec3;
 use rustc_hash::FxHashSet;
@@ -29,7 +29,10 @@ pub(super) struct Run<'a> {
     pub(super) features: Vec<Feature>,
     /// The marks, turned so that those of one chain count in the same direction.
     pub(super) marks: Vec<Mark>,
-    /// The vertices of the marked edges, as the selection names them.
+    /// Marks that make odd faces even, and what was done about those; none without features.
+    pub(super) parity: Vec<Mark>,
+    pub(super) parity_report: Option<parity::Report>,
+    /// The vertices of the marked edges, as the selection names them; those of the parity lines follow.
     pub(super) edges: Vec<(u32, u32)>,
     /// The feature of each mark; empty without features.
     pub(super) feature_of: Vec<usize>,
@@ -74,6 +77,8 @@ impl<'a> Run<'a> {
                 .iter()
                 .map(|mark| (mesh.source(mark.half_edge).0, mesh.target(mark.half_edge).0))
                 .collect(),
+            parity: Vec::new(),
+            parity_report: None,
             feature_of: Vec::new(),
             asked: Vec::new(),
             inside: Vec::new(),

@@ -1,7 +1,7 @@
 //! What a feature did, for people and programs.
 
 use super::length::{Length, significant};
-use crate::mark::StripEnd;
+use crate::mark::{StripEnd, parity};
 use crate::mesh::{FaceId, Renumbering, VertexId};
 use crate::optimise::{FitReport, Stop};
 use crate::surface::Deviation;
@@ -66,15 +66,25 @@ pub struct FeatureReport {
     pub dimensions: Vec<Dimension>,
 }
 
-/// A face that no rule could handle.
+/// A mark that no rule could handle on one side of its edge.
+#[derive(Clone, PartialEq, Eq, Debug, Serialize)]
+pub struct LeftoverMark {
+    /// The marked edge, by its vertices, which keep their numbers.
+    pub edge: (u32, u32),
+    /// The kind of the mark.
+    pub kind: String,
+}
+
+/// A face that no rule could handle. Its marks are kept on the mesh, as the attribute `unresolved` of its half-edges:
+/// the kind of the mark, on the half-edge of the face where the marked edge begins.
 #[derive(Clone, PartialEq, Eq, Debug, Serialize)]
 pub struct Leftover {
     /// The face, in the numbering of the result.
     pub face: u32,
     /// Its vertices.
     pub vertices: Vec<u32>,
-    /// How many marked edges it has.
-    pub marks: usize,
+    /// The marks on its sides.
+    pub marks: Vec<LeftoverMark>,
 }
 
 /// Something the user should look at.
@@ -146,6 +156,8 @@ pub struct Report {
     pub rules: Vec<(String, u64)>,
     /// Faces that no rule could handle.
     pub leftovers: Vec<Leftover>,
+    /// What was done about odd faces; `None` for rule sets without a profile.
+    pub parity: Option<parity::Report>,
     /// What the optimiser did.
     pub fit: FitReport,
     /// The features that were marked.
@@ -194,6 +206,10 @@ impl Report {
         for leftover in &mut self.leftovers {
             leftover.face = face(leftover.face).unwrap_or(leftover.face);
             vertices(&mut leftover.vertices);
+            for mark in &mut leftover.marks {
+                let (a, b) = mark.edge;
+                mark.edge = (vertex(a).unwrap_or(a), vertex(b).unwrap_or(b));
+            }
         }
         for warning in &mut self.warnings {
             match warning {
@@ -270,6 +286,11 @@ impl fmt::Display for Report {
                     "deviation, {name}: max {:.3e}, rms {:.3e}; outside of the footprint max {:.3e}, rms {:.3e}",
                     d.total.max, d.total.rms, d.outside.max, d.outside.rms
                 )?;
+                writeln!(
+                    f,
+                    "  outside of the footprint 95 % within {:.3e}; normals turn by at most {:.2} degrees, mean curvature changes by at most {:.2e}, rms {:.2e}",
+                    d.outside.p95, d.outside.normal, d.outside.curvature_max, d.outside.curvature_rms
+                )?;
             }
         }
         if self.without_texcoords > 0 {
@@ -278,13 +299,21 @@ impl fmt::Display for Report {
         for end in &self.ends {
             writeln!(f, "note: {end}")?;
         }
+        if let Some(parity) = &self.parity {
+            write!(f, "{parity}")?;
+        }
         for leftover in &self.leftovers {
+            let marks: Vec<String> = leftover
+                .marks
+                .iter()
+                .map(|mark| format!("{},{}#{}", mark.edge.0, mark.edge.1, mark.kind))
+                .collect();
             writeln!(
                 f,
-                "unresolved: face {} with {} edges and {} marked sides; no rule handles it",
+                "unresolved: face {} with {} edges, marked at {}; no rule handles it",
                 leftover.face,
                 leftover.vertices.len(),
-                leftover.marks
+                marks.join(" ")
             )?;
         }
         for warning in &self.warnings {

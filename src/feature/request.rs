@@ -1,10 +1,10 @@
 //! What a caller asks for, and why it may be refused.
 
 use super::settings::Setting;
-use super::{Length, Profile, ProfileError, SettingError, Unit, WidthError};
+use super::{Leftover, Length, Profile, ProfileError, SettingError, Unit, WidthError};
 use crate::grammar::{self, RuleSet, Tracer};
 use crate::job::Cancelled;
-use crate::mark::DEFAULT_KIND;
+use crate::mark::{DEFAULT_KIND, parity};
 use crate::optimise::Method;
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -224,6 +224,10 @@ fn unknown(feature: &str, name: &str, known: Vec<String>) -> String {
 pub struct Options {
     /// How to fit the changed mesh to the surface as it was.
     pub method: Method,
+    /// What to do about faces that the marks leave with an odd number of sides.
+    pub parity: parity::Mode,
+    /// Marks that no rule handles are an error; otherwise they are kept, see [`Leftover`].
+    pub strict: bool,
     /// Samples per side of a face for measuring deviations, 8 as a rule; 0 measures none. Measuring also looks for
     /// walls thinner than the feature is deep. It costs more than the feature itself.
     pub samples: usize,
@@ -235,7 +239,14 @@ pub struct Options {
 
 impl Default for Options {
     fn default() -> Self {
-        Self { method: Method::Solve, samples: 0, threads: 1, tracer: None }
+        Self {
+            method: Method::Solve,
+            parity: parity::Mode::default(),
+            strict: false,
+            samples: 0,
+            threads: 1,
+            tracer: None,
+        }
     }
 }
 
@@ -286,6 +297,13 @@ pub enum FeatureError {
     /// A width that an edge cannot take.
     #[error(transparent)]
     Width(#[from] WidthError),
+    /// Marks that no rule handles, in strict mode. Edges have the numbers of the mesh as it is; faces are those that
+    /// the rules would have left.
+    #[error("{}", unresolved(leftovers))]
+    Unresolved {
+        /// What would be left over.
+        leftovers: Vec<Leftover>,
+    },
     /// The rules failed.
     #[error(transparent)]
     Rules(#[from] grammar::RunError),
@@ -300,4 +318,19 @@ fn open_loop(ends: &[(u32, u32)]) -> String {
     }
     let list: Vec<String> = ends.iter().map(|(a, b)| format!("{a},{b}")).collect();
     format!("ends at the edges {}", list.join(" and "))
+}
+
+fn unresolved(leftovers: &[Leftover]) -> String {
+    let mut edges: Vec<(u32, u32)> =
+        leftovers.iter().flat_map(|leftover| &leftover.marks).map(|mark| mark.edge).collect();
+    edges.sort_unstable();
+    edges.dedup();
+    let first: Vec<String> = edges.iter().take(4).map(|(a, b)| format!("{a},{b}")).collect();
+    let more = if edges.len() > first.len() { ", ..." } else { "" };
+    format!(
+        "no rule handles {} faces at the marked edges {}{more}; change the marks there, or apply without strict to keep \
+         the rest",
+        leftovers.len(),
+        first.join(" ")
+    )
 }

@@ -26,7 +26,10 @@ impl Run<'_> {
         job: &Job,
     ) -> Result<Report, FeatureError> {
         job.step("report", 0.8)?;
-        let leftovers = settle(mesh, !self.features.is_empty());
+        let leftovers = settle(mesh, !self.features.is_empty(), &self.edges);
+        if self.options.strict && !leftovers.is_empty() {
+            return Err(FeatureError::Unresolved { leftovers });
+        }
         let mut displaced = None;
         let mut fitted = None;
         if let Some(reference) = reference {
@@ -70,6 +73,7 @@ impl Run<'_> {
             new_valences,
             rules: pass.outcome.applications.clone(),
             leftovers,
+            parity: self.parity_report.clone(),
             features: self.features(mesh, &pass),
             fit: pass.fit,
             corrections,

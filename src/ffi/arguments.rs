@@ -94,6 +94,64 @@ pub(super) unsafe fn text<'a>(pointer: *const c_char, length: usize, name: &str)
     std::str::from_utf8(bytes).map_err(|error| Failure::argument(format!("{name} is not UTF-8: {error}")))
 }
 
+/// Rows of doubles, `stride` bytes apart from row to row; 0 means that nothing lies between them.
+pub(super) struct Rows<'a> {
+    doubles: &'a [f64],
+    width: usize,
+    step: usize,
+}
+
+/// Doubles from row to row.
+fn row_step(width: usize, stride: usize, name: &str) -> Result<usize, Failure> {
+    const DOUBLE: usize = size_of::<f64>();
+    let least = width * DOUBLE;
+    let stride = if stride == 0 { least } else { stride };
+    if stride < least || !stride.is_multiple_of(DOUBLE) {
+        return Err(Failure::argument(format!(
+            "the stride of {name} is {stride} bytes; it must be 0 or a multiple of {DOUBLE} of at least {least}"
+        )));
+    }
+    Ok(stride / DOUBLE)
+}
+
+/// Doubles from the first of the first row to the last of the last one.
+fn row_extent(count: usize, width: usize, step: usize, name: &str) -> Result<usize, Failure> {
+    let Some(last) = count.checked_sub(1) else { return Ok(0) };
+    last.checked_mul(step)
+        .and_then(|start| start.checked_add(width))
+        .ok_or_else(|| Failure::argument(format!("{count} rows of {name} are more than memory can hold")))
+}
+
+impl<'a> Rows<'a> {
+    /// # Safety
+    /// `pointer` is NULL or the start of such an array of `count` rows that nobody changes during the call.
+    pub(super) unsafe fn new(
+        pointer: *const f64,
+        count: usize,
+        width: usize,
+        stride: usize,
+        name: &str,
+    ) -> Result<Self, Failure> {
+        let step = row_step(width, stride, name)?;
+        // SAFETY: the last row ends with this many doubles, all of which belong to the caller's array.
+        let doubles = unsafe { array(pointer, row_extent(count, width, step, name)?, name) }?;
+        Ok(Self { doubles, width, step })
+    }
+
+    /// Row `i`, which is below the count.
+    #[inline(always)]
+    pub(super) fn row(&self, i: usize) -> &'a [f64] {
+        &self.doubles[i * self.step..i * self.step + self.width]
+    }
+
+    /// Rows `range`, in order.
+    pub(super) fn range(&self, range: std::ops::Range<usize>) -> impl Iterator<Item = &'a [f64]> {
+        let count = range.len();
+        let (width, doubles) = (self.width, self.doubles.get(range.start * self.step..).unwrap_or_default());
+        doubles.chunks(self.step).take(count).filter_map(move |row| row.get(..width))
+    }
+}
+
 /// Points whose coordinates are `stride` bytes apart from point to point; 0 means that nothing lies between them.
 ///
 /// # Safety
@@ -104,22 +162,9 @@ pub(super) unsafe fn points(
     stride: usize,
     name: &str,
 ) -> Result<Vec<glam::DVec3>, Failure> {
-    const POINT: usize = size_of::<[f64; 3]>();
-    const DOUBLE: usize = size_of::<f64>();
-    let stride = if stride == 0 { POINT } else { stride };
-    if stride < POINT || !stride.is_multiple_of(DOUBLE) {
-        return Err(Failure::argument(format!(
-            "the stride of {name} is {stride} bytes; it must be 0 or a multiple of {DOUBLE} of at least {POINT}"
-        )));
-    }
-    let Some(last) = count.checked_sub(1) else { return Ok(Vec::new()) };
-    let step = stride / DOUBLE;
-    let doubles = last.checked_mul(step).and_then(|start| start.checked_add(3)).ok_or_else(|| {
-        Failure::argument(format!("{count} points of {name} are more than memory can hold"))
-    })?;
-    // SAFETY: the last point ends with this many doubles, all of which belong to the caller's array.
-    let doubles = unsafe { array(pointer, doubles, name) }?;
-    Ok(doubles.chunks(step).map(|point| glam::DVec3::new(point[0], point[1], point[2])).collect())
+    // SAFETY: as for this function.
+    let rows = unsafe { Rows::new(pointer, count, 3, stride, name) }?;
+    Ok(rows.range(0..count).map(glam::DVec3::from_slice).collect())
 }
 
 /// A place for one result. It is written only by a call that succeeds.
@@ -193,6 +238,46 @@ impl<T: Copy> Buffer<T> {
         for (i, element) in elements.into_iter().take(self.count).enumerate() {
             // SAFETY: `i` is below the count, for whose room whoever made `self` answers.
             unsafe { self.start.add(i).write(element) };
+        }
+    }
+}
+
+/// The caller's rows of results, `stride` bytes apart; as [`Buffer`], but several threads may write different rows.
+pub(super) struct RowBuffer {
+    start: *mut f64,
+    count: usize,
+    width: usize,
+    step: usize,
+}
+
+// SAFETY: who writes from several threads writes different rows, as `write` asks.
+unsafe impl Sync for RowBuffer {}
+
+impl RowBuffer {
+    /// # Safety
+    /// `pointer` is NULL or the start of room for `capacity` doubles, until the end of the call.
+    pub(super) unsafe fn new(
+        pointer: *mut f64,
+        capacity: usize,
+        [count, width, stride]: [usize; 3],
+        name: &str,
+    ) -> Result<Self, Failure> {
+        let step = row_step(width, stride, name)?;
+        // SAFETY: as for this function.
+        let Buffer { start, .. } =
+            unsafe { Buffer::new(pointer, capacity, row_extent(count, width, step, name)?, name) }?;
+        Ok(Self { start, count, width, step })
+    }
+
+    /// Writes row `i`; what is not asked for is left out.
+    ///
+    /// # Safety
+    /// No other thread writes this row meanwhile.
+    #[inline(always)]
+    pub(super) unsafe fn write(&self, i: usize, row: &[f64]) {
+        if i < self.count && row.len() == self.width {
+            // SAFETY: the row lies within the room for which whoever made `self` answers; what is read is no part of it.
+            unsafe { std::ptr::copy_nonoverlapping(row.as_ptr(), self.start.add(i * self.step), row.len()) };
         }
     }
 }

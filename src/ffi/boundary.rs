@@ -3,6 +3,7 @@
 use super::error::WeltError;
 use super::failure::Failure;
 use super::status::{WELT_ERROR_INTERNAL, WELT_ERROR_POISONED, WELT_OK};
+use crate::fault;
 use std::any::Any;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
@@ -13,6 +14,10 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 /// # Safety
 /// `error` is NULL or can be written to.
 pub(super) unsafe fn boundary(error: *mut *mut WeltError, body: impl FnOnce() -> Result<(), Failure>) -> i32 {
+    let body = || {
+        fault::point("entry");
+        body()
+    };
     let outcome = catch_unwind(AssertUnwindSafe(body)).unwrap_or_else(|panic| Err(internal(panic)));
     let (status, handle) = match outcome {
         Ok(()) => (WELT_OK, std::ptr::null_mut()),
@@ -29,6 +34,12 @@ pub(super) unsafe fn boundary(error: *mut *mut WeltError, body: impl FnOnce() ->
 
 /// Runs the body of an exported function that cannot fail but for a defect of its own; then gives `fallback`.
 pub(super) fn boundary_value<T>(fallback: T, body: impl FnOnce() -> T) -> T {
+    let body = || {
+        let value = body();
+        // After the work, so that a handle that is freed is free.
+        fault::point("exit");
+        value
+    };
     catch_unwind(AssertUnwindSafe(body)).unwrap_or_else(|panic| {
         drop(internal(panic));
         fallback
@@ -48,7 +59,7 @@ fn internal(panic: Box<dyn Any + Send>) -> Failure {
     Failure::new(WELT_ERROR_INTERNAL, format!("internal error: {text}; please report it"))
 }
 
-/// The content of a handle that can be changed. A change that panics leaves it poisoned.
+/// The content of a handle that can be changed. A change that panics or finds a defect of the library leaves it poisoned.
 pub(super) struct Guarded<T> {
     content: T,
     poisoned: bool,
@@ -75,8 +86,10 @@ impl<T> Guarded<T> {
     ) -> Result<R, Failure> {
         self.read()?;
         self.poisoned = true;
+        fault::point("change begun");
         let result = work(&mut self.content);
-        self.poisoned = false;
+        fault::point("change done");
+        self.poisoned = matches!(&result, Err(failure) if failure.code == WELT_ERROR_INTERNAL);
         result
     }
 }

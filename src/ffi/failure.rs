@@ -1,7 +1,7 @@
 //! Why a call failed, before it becomes an error handle.
 
 use super::status::*;
-use crate::feature::{FeatureError, ProfileError, RequestError, WidthError};
+use crate::feature::{FeatureError, LeftoverMark, ProfileError, RequestError, WidthError};
 use crate::gml::Diagnostic;
 use crate::grammar::{RulesError, RunError};
 use crate::io::{ExportError, ImportError};
@@ -229,6 +229,13 @@ impl From<FeatureError> for Failure {
             FeatureError::OpenLoop { ends, .. } => {
                 let places = ends.into_iter().map(|edge| Place::edge(edge, message.clone())).collect();
                 Self { places, ..Self::argument(message) }
+            }
+            FeatureError::Unresolved { leftovers } => {
+                let marks = leftovers.iter().flat_map(|leftover| &leftover.marks);
+                let place = |mark: &LeftoverMark| {
+                    Place::edge(mark.edge, format!("no rule handles the mark #{}", mark.kind))
+                };
+                Self { code: WELT_ERROR_RULE, message, places: marks.map(place).collect() }
             }
             FeatureError::Rules(error) => error.into(),
             FeatureError::Cancelled(cancelled) => cancelled.into(),

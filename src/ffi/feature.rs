@@ -7,11 +7,12 @@ use super::failure::{Failure, Place};
 use super::job::WeltJob;
 use super::mesh::{WeltMesh, mesh_of};
 use super::options::{self, Options};
-use super::report::WeltReport;
+use super::report::{WeltReport, hand_over};
 use super::rules::WeltRules;
 use super::selection::WeltSelection;
 use crate::feature::{self, Profile, Request};
 use crate::job::Job;
+use crate::mark::parity;
 use crate::mesh::VertexId;
 use crate::optimise::Method;
 use crate::surface::{SAMPLES, Sampling};
@@ -24,13 +25,36 @@ pub const WELT_FIT_NONE: u32 = 0;
 pub const WELT_FIT_LOOP: u32 = 1;
 /// The sparse system which that iteration converges to.
 pub const WELT_FIT_SOLVE: u32 = 2;
+/// Least squares of distance and slope over samples of the surface; vertices move along the normal.
+pub const WELT_FIT_SURFACE: u32 = 3;
+/// The same; vertices that were there before may also slide along the surface, which brings the new surface closest.
+pub const WELT_FIT_SURFACE_SLIDE: u32 = 4;
 
 pub(super) fn method(number: u32) -> Result<Method, Failure> {
     match number {
         WELT_FIT_NONE => Ok(Method::None),
         WELT_FIT_LOOP => Ok(Method::Loop),
         WELT_FIT_SOLVE => Ok(Method::Solve),
+        WELT_FIT_SURFACE => Ok(Method::Fit),
+        WELT_FIT_SURFACE_SLIDE => Ok(Method::FitSlide),
         _ => Err(Failure::argument(format!("the fit is {number}, which is no WELT_FIT_*"))),
+    }
+}
+
+/// A line of vertices between faces that the marks leave with an odd number of sides, where the way is short; one irregular
+/// face each elsewhere.
+pub const WELT_PARITY_AUTO: u32 = 0;
+/// Lines wherever there is a way, also to triangles and pentagons, so that no new face is other than a quad.
+pub const WELT_PARITY_ALL_QUAD: u32 = 1;
+/// No lines: one irregular face each.
+pub const WELT_PARITY_LOCAL: u32 = 2;
+
+fn parity_mode(number: u32) -> Result<parity::Mode, Failure> {
+    match number {
+        WELT_PARITY_AUTO => Ok(parity::Mode::Auto),
+        WELT_PARITY_ALL_QUAD => Ok(parity::Mode::AllQuad),
+        WELT_PARITY_LOCAL => Ok(parity::Mode::Local),
+        _ => Err(Failure::argument(format!("the parity is {number}, which is no WELT_PARITY_*"))),
     }
 }
 
@@ -44,18 +68,22 @@ pub struct WeltFeatureOptions {
     pub fit: u32,
     /// Not 0: measure deviations and look for thin walls; costs more than the feature. Default 0.
     pub deviation: u32,
-    /// Leave it 0.
-    pub reserved: u32,
+    /// What is done about faces that the marks leave with an odd number of sides: one of WELT_PARITY_*. Default
+    /// WELT_PARITY_AUTO.
+    pub parity: u32,
+    /// Not 0: marks that no rule handles are an error, WELT_ERROR_RULE, whose places are the marked edges; else they
+    /// are kept and the report lists them. Default 0.
+    pub strict: u32,
 }
 
-// SAFETY: `repr(C)`, four integers of four bytes.
+// SAFETY: `repr(C)`, five integers of four bytes.
 unsafe impl Options for WeltFeatureOptions {
     fn first_size() -> usize {
-        16
+        20
     }
 
     fn defaults(struct_size: u32) -> Self {
-        Self { struct_size, fit: WELT_FIT_SOLVE, deviation: 0, reserved: 0 }
+        Self { struct_size, fit: WELT_FIT_SOLVE, deviation: 0, parity: WELT_PARITY_AUTO, strict: 0 }
     }
 }
 
@@ -114,6 +142,8 @@ unsafe fn apply(
     };
     let options = feature::Options {
         method: method(options.fit)?,
+        parity: parity_mode(options.parity)?,
+        strict: options.strict != 0,
         samples: if options.deviation != 0 { SAMPLES } else { 0 },
         ..feature::Options::default()
     };
@@ -123,11 +153,10 @@ unsafe fn apply(
     let job = job.map_or(&idle, |job| &job.job);
     let done = mesh.change(|mesh| {
         let selection = selection.on(mesh)?;
-        Ok(feature::apply(mesh, selection, &request, &options, job)?)
+        let done = feature::apply(mesh, selection, &request, &options, job)?;
+        report.is_some().then(|| WeltReport::new(&done)).transpose()
     })?;
-    if let Some(report) = report {
-        report.handle(WeltReport::new(&done)?);
-    }
+    hand_over(report, done);
     Ok(())
 }
 
@@ -149,8 +178,8 @@ unsafe fn apply(
 /// warnings. Free it with welt_report_free.
 ///
 /// Fails with WELT_ERROR_ARGUMENT (an unknown feature or setting, a selection of another mesh, a width that an edge cannot
-/// take: the place is the edge), WELT_ERROR_FILE, WELT_ERROR_RULE, WELT_ERROR_CANCELLED; the mesh is as it was before then.
-/// Since: 0.1.
+/// take: the place is the edge), WELT_ERROR_FILE, WELT_ERROR_RULE (also, when strict, for marks that no rule handles),
+/// WELT_ERROR_CANCELLED; the mesh is as it was before then. Since: 0.1.
 #[unsafe(no_mangle)]
 #[allow(clippy::too_many_arguments)]
 pub unsafe extern "C" fn welt_feature_apply(
@@ -250,14 +279,11 @@ pub unsafe extern "C" fn welt_mesh_displace(
         }
         let heights: Vec<(VertexId, f64)> =
             vertices.iter().map(|&v| VertexId(v)).zip(heights.iter().copied()).collect();
-        mesh.change(|mesh| {
-            let checkpoint = mesh.begin();
+        mesh.transact(|mesh| {
             let left_out = feature::raise(mesh, &heights);
             if left_out.is_empty() {
-                mesh.commit(checkpoint);
                 return Ok(());
             }
-            mesh.rollback(checkpoint);
             let place = |v: &VertexId| Place::vertex(v.0, "the surface has no normal here");
             Err(Failure {
                 places: left_out.iter().map(place).collect(),

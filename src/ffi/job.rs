@@ -3,8 +3,9 @@
 use super::arguments::{self, Output};
 use super::boundary::{boundary, boundary_value};
 use super::error::WeltError;
+use super::failure::Failure;
 use crate::job::Job;
-use std::ffi::c_char;
+use std::ffi::{c_char, c_void};
 
 /// Watches and cancels a long call. All functions of a job may be called from any thread at any time, also while a call
 /// works with it. Cancelling is for good: use a new job for the next call.
@@ -20,6 +21,51 @@ pub unsafe extern "C" fn welt_job_create(job: *mut *mut WeltJob, error: *mut *mu
         // SAFETY: the header asks for NULL or a place for the handle.
         let output = unsafe { Output::new(job, "job") }?;
         output.handle(WeltJob { job: Job::new() });
+        Ok(())
+    };
+    // SAFETY: the header asks for NULL or a place for an error.
+    unsafe { boundary(error, body) }
+}
+
+/// What C is called back with: a function and its context.
+struct Callback {
+    function: unsafe extern "C" fn(context: *mut c_void, progress: f64),
+    context: *mut c_void,
+}
+
+// SAFETY: the header says on which thread the function is called; the caller answers for what it does there.
+unsafe impl Send for Callback {}
+// SAFETY: as above.
+unsafe impl Sync for Callback {}
+
+impl Callback {
+    fn call(&self, progress: f64) {
+        // SAFETY: the header asks for a function that may be called with this context until the job is freed.
+        unsafe { (self.function)(self.context, progress) };
+    }
+}
+
+/// Has a function called with the progress at every step of a call that works with the job.
+///
+/// job: must not be NULL; no call may work with it meanwhile.
+/// observer: is called by the thread that made the call, with the progress in [0, 1]. It may use the functions of this job,
+/// welt_job_cancel above all, and handles that the call does not change. It must come back: no exception, no longjmp.
+/// context: is passed to the function as it is; may be NULL.
+///
+/// Since: 0.1.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn welt_job_observe(
+    job: *mut WeltJob,
+    observer: Option<unsafe extern "C" fn(context: *mut c_void, progress: f64)>,
+    context: *mut c_void,
+    error: *mut *mut WeltError,
+) -> i32 {
+    let body = || {
+        // SAFETY: the header asks for a living job that nobody else uses.
+        let job = unsafe { arguments::handle_mut(job, "job") }?;
+        let function = observer.ok_or_else(|| Failure::argument("observer is NULL"))?;
+        let callback = Callback { function, context };
+        job.job.observe(move |progress| callback.call(progress));
         Ok(())
     };
     // SAFETY: the header asks for NULL or a place for an error.

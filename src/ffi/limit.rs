@@ -1,10 +1,10 @@
 //! The limit surface at the vertices of a mesh.
 
-use super::arguments::Buffer;
+use super::arguments::RowBuffer;
 use super::boundary::boundary;
 use super::error::WeltError;
 use super::mesh::{WeltMesh, mesh_of};
-use crate::subdivision;
+use crate::subdivision::{each_limit_point, each_limit_position};
 
 /// Writes the point of the limit surface that belongs to each vertex. A vertex without a face stays where it is.
 ///
@@ -23,10 +23,13 @@ pub unsafe extern "C" fn welt_mesh_limit_positions(
     let body = || {
         // SAFETY: the header asks for a living mesh.
         let mesh = unsafe { mesh_of(mesh) }?;
-        let needed = 3 * mesh.vertex_bound();
         // SAFETY: the header asks for a buffer of this capacity.
-        let buffer = unsafe { Buffer::new(positions, capacity, needed, "positions") }?;
-        buffer.fill(subdivision::limit_positions(mesh).iter().flat_map(|p| p.to_array()));
+        let buffer =
+            unsafe { RowBuffer::new(positions, capacity, [mesh.vertex_bound(), 3, 0], "positions") }?;
+        for (i, position) in each_limit_position(mesh).enumerate() {
+            // SAFETY: there is one thread.
+            unsafe { buffer.write(i, &position.to_array()) };
+        }
         Ok(())
     };
     // SAFETY: the header asks for NULL or a place for an error.
@@ -51,11 +54,12 @@ pub unsafe extern "C" fn welt_mesh_limit_normals(
     let body = || {
         // SAFETY: the header asks for a living mesh.
         let mesh = unsafe { mesh_of(mesh) }?;
-        let needed = 3 * mesh.vertex_bound();
         // SAFETY: the header asks for a buffer of this capacity.
-        let buffer = unsafe { Buffer::new(normals, capacity, needed, "normals") }?;
-        let points = subdivision::limit_points(mesh);
-        buffer.fill(points.iter().flat_map(|point| point.normal().unwrap_or_default().to_array()));
+        let buffer = unsafe { RowBuffer::new(normals, capacity, [mesh.vertex_bound(), 3, 0], "normals") }?;
+        for (i, point) in each_limit_point(mesh).enumerate() {
+            // SAFETY: there is one thread.
+            unsafe { buffer.write(i, &point.normal().unwrap_or_default().to_array()) };
+        }
         Ok(())
     };
     // SAFETY: the header asks for NULL or a place for an error.

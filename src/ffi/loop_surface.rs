@@ -1,13 +1,17 @@
 //! Loop subdivision of triangle meshes.
 
-use super::arguments::{Buffer, Output};
+use super::arguments::{self, Buffer, Output, RowBuffer, Rows};
 use super::boundary::boundary;
 use super::error::WeltError;
+use super::evaluate::{WeltBatchOptions, order};
 use super::failure::{Failure, Location, Place};
 use super::mesh::{WeltMesh, mesh_of};
+use super::options;
 use super::status::WELT_ERROR_MESH;
-use crate::mesh::Mesh;
-use crate::subdivision::{LimitPoint, LoopSurface, NotTriangles};
+use crate::mesh::{FaceId, Mesh};
+use crate::subdivision::{LimitPoint, LoopSurface, NotTriangles, SurfacePoint};
+use crate::threads::in_ranges;
+use glam::DVec3;
 
 impl From<NotTriangles> for Failure {
     fn from(error: NotTriangles) -> Self {
@@ -83,4 +87,78 @@ pub unsafe extern "C" fn welt_mesh_loop_limit(
     };
     // SAFETY: the header asks for NULL or a place for an error.
     unsafe { boundary(error, body) }
+}
+
+/// Evaluates the Loop limit surface of a triangle mesh at parameters of faces.
+///
+/// mesh: must not be NULL.
+/// faces: the face of each point.
+/// parameters: u and v of each point, the weights of the second and the third corner: u >= 0, v >= 0, u + v <= 1; what lies
+/// outside is moved inside.
+/// count: number of points.
+/// derivatives: up to which order, 0 to 2.
+/// options: threads and strides; NULL for the defaults.
+/// values: receives per point what welt_surface_evaluate writes.
+/// capacity: room in values, in doubles up to the end of the last point.
+///
+/// Fails with WELT_ERROR_MESH where a face of the mesh is no triangle, and with WELT_ERROR_ARGUMENT where a face does not
+/// exist or a parameter is NaN. Since: 0.1.
+#[unsafe(no_mangle)]
+#[allow(clippy::too_many_arguments)]
+pub unsafe extern "C" fn welt_mesh_loop_evaluate(
+    mesh: *const WeltMesh,
+    faces: *const u32,
+    parameters: *const f64,
+    count: usize,
+    derivatives: u32,
+    options: *const WeltBatchOptions,
+    values: *mut f64,
+    capacity: usize,
+    error: *mut *mut WeltError,
+) -> i32 {
+    let body = || {
+        let width = order(derivatives)?.values();
+        // SAFETY: the header asks for a living mesh, initialised options or NULL, and arrays and a buffer of these sizes.
+        let (mesh, options, faces, parameters, buffer) = unsafe {
+            let options = options::complete(options)?;
+            (
+                mesh_of(mesh)?,
+                options,
+                arguments::array(faces, count, "faces")?,
+                Rows::new(parameters, count, 2, options.input_stride, "parameters")?,
+                RowBuffer::new(values, capacity, [count, width, options.output_stride], "values")?,
+            )
+        };
+        let surface = LoopSurface::new(mesh)?;
+        for (i, (&face, uv)) in faces.iter().zip(parameters.range(0..count)).enumerate() {
+            if FaceId(face).is_boundary() || !mesh.has_face(FaceId(face)) {
+                return Err(Failure::argument(format!("face {face} does not exist")));
+            }
+            if uv.iter().any(|parameter| parameter.is_nan()) {
+                return Err(Failure::argument(format!("a parameter of point {i} is NaN")));
+            }
+        }
+        in_ranges(count, options.threads as usize, 64, |range| {
+            for i in range {
+                let uv = parameters.row(i);
+                let point = surface.evaluate(FaceId(faces[i]), uv[0], uv[1]);
+                // SAFETY: ranges have no row in common.
+                unsafe { buffer.write(i, &numbers(point)[..width]) };
+            }
+        });
+        Ok(())
+    };
+    // SAFETY: the header asks for NULL or a place for an error.
+    unsafe { boundary(error, body) }
+}
+
+/// Position, first and second derivatives; NaN for what is not defined.
+fn numbers(point: Option<SurfacePoint>) -> [f64; 18] {
+    let mut numbers = [f64::NAN; 18];
+    if let Some(SurfacePoint { position, du, dv, second, .. }) = point {
+        let [uu, uv, vv] = second.map_or([DVec3::NAN; 3], |second| [second.uu, second.uv, second.vv]);
+        let vectors = [position, du, dv, uu, uv, vv];
+        numbers.iter_mut().zip(vectors.iter().flat_map(|v| v.to_array())).for_each(|(slot, x)| *slot = x);
+    }
+    numbers
 }

@@ -5,6 +5,7 @@ use super::boundary::{Guarded, boundary, boundary_value};
 use super::error::WeltError;
 use super::failure::{Failure, Place};
 use super::status::WELT_ERROR_MESH;
+use crate::fault;
 use crate::mesh::{Mesh, Polygons, VertexId};
 use glam::DVec3;
 
@@ -27,6 +28,22 @@ impl WeltMesh {
         work: impl FnOnce(&mut Mesh) -> Result<R, Failure>,
     ) -> Result<R, Failure> {
         self.content.change(work)
+    }
+
+    /// Changes the mesh; a failure leaves it as it was before.
+    pub(super) fn transact<R>(
+        &mut self,
+        work: impl FnOnce(&mut Mesh) -> Result<R, Failure>,
+    ) -> Result<R, Failure> {
+        self.change(|mesh| {
+            let checkpoint = mesh.begin();
+            let result = work(mesh);
+            match result {
+                Ok(_) => mesh.commit(checkpoint),
+                Err(_) => mesh.rollback(checkpoint),
+            }
+            result
+        })
     }
 }
 
@@ -194,6 +211,7 @@ pub unsafe extern "C" fn welt_mesh_set_positions(
         mesh.change(|mesh| {
             for (id, &position) in positions.iter().enumerate() {
                 mesh.set_position(VertexId(id as u32), position);
+                fault::point("positions");
             }
             Ok(())
         })

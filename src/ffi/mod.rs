@@ -10,7 +10,10 @@
 mod arguments;
 mod boundary;
 mod error;
+mod evaluate;
 mod failure;
+#[cfg(feature = "fault-injection")]
+mod fault;
 mod feature;
 mod file;
 mod job;
@@ -18,6 +21,9 @@ mod limit;
 mod loop_surface;
 mod mesh;
 mod options;
+mod query;
+#[cfg(test)]
+mod query_tests;
 mod refinement;
 mod report;
 mod rules;
@@ -30,12 +36,16 @@ mod tests;
 mod version;
 
 pub use error::*;
+pub use evaluate::*;
+#[cfg(feature = "fault-injection")]
+pub use fault::*;
 pub use feature::*;
 pub use file::*;
 pub use job::*;
 pub use limit::*;
 pub use loop_surface::*;
 pub use mesh::*;
+pub use query::*;
 pub use refinement::*;
 pub use report::*;
 pub use rules::*;

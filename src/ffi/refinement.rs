@@ -126,6 +126,16 @@ pub unsafe extern "C" fn welt_refinement_face_count(refinement: *const WeltRefin
     unsafe { count(refinement, level, Level::face_count) }
 }
 
+/// Sum of the numbers of vertices of all faces of a level; 0 where refinement is NULL or has no such level. Since: 0.1.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn welt_refinement_face_vertex_count(
+    refinement: *const WeltRefinement,
+    level: u32,
+) -> usize {
+    // SAFETY: the header asks for NULL or a living refinement.
+    unsafe { count(refinement, level, |level| level.face_vertices().len()) }
+}
+
 /// The positions of the vertices of a level as a view.
 ///
 /// refinement: must not be NULL.
@@ -157,8 +167,8 @@ pub unsafe extern "C" fn welt_refinement_positions(
 ///
 /// refinement: must not be NULL.
 /// level: 0 to the depth.
-/// vertices: receives the address of the vertices of all faces one after the other, counter-clockwise, 0-based. They belong
-/// to the refinement and are valid until it is freed. On level 1 and above there are 4 per face: a face covers one
+/// vertices: receives the address of the vertices of all faces one after the other, counter-clockwise, 0-based:
+/// welt_refinement_face_vertex_count(refinement, level) numbers that belong to the refinement and are valid until it is freed. On level 1 and above there are 4 per face: a face covers one
 /// corner of a face of the level before, and has the point of that corner, of the edge that leaves it, of the face, and
 /// of the edge that arrives. On level 0 the numbers of vertices are those that welt_mesh_faces gives.
 ///

@@ -1,9 +1,10 @@
 //! `welt_report`.
 
-use super::arguments;
+use super::arguments::{self, Output};
 use super::boundary::boundary_value;
 use super::failure::Failure;
 use super::status::WELT_ERROR_INTERNAL;
+use crate::fault;
 use serde::Serialize;
 use std::ffi::{CString, c_char};
 
@@ -14,10 +15,18 @@ pub struct WeltReport {
 
 impl WeltReport {
     pub(super) fn new(content: &impl Serialize) -> Result<Self, Failure> {
+        fault::point("report");
         let internal = |reason: String| Failure::new(WELT_ERROR_INTERNAL, reason);
         let text = serde_json::to_string(content).map_err(|error| internal(error.to_string()))?;
         // JSON writes control characters as escapes, so that there is no NUL in it.
         Ok(Self { json: CString::new(text).map_err(|error| internal(error.to_string()))? })
+    }
+}
+
+/// Hands the report that was made, if any, to the caller who asked for it.
+pub(super) fn hand_over(output: Option<Output<*mut WeltReport>>, report: Option<WeltReport>) {
+    if let (Some(output), Some(report)) = (output, report) {
+        output.handle(report);
     }
 }
 

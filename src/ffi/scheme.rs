@@ -6,6 +6,7 @@ use super::error::WeltError;
 use super::failure::{Failure, Place};
 use super::mesh::WeltMesh;
 use super::status::WELT_ERROR_MESH;
+use crate::fault;
 use crate::mesh::{BoundaryRule, Creasing, FaceId, HalfEdgeId, Mesh, SubdivisionOptions, VertexId};
 
 /// Faces at a boundary vertex are no part of the surface, unless all boundary edges there are infinitely sharp.
@@ -98,6 +99,7 @@ pub unsafe extern "C" fn welt_mesh_set_edge_sharpness(
             let edges = find(mesh, &ends)?;
             for (h, &sharpness) in edges.into_iter().zip(sharpness) {
                 mesh.set_edge_sharpness(h, sharpness);
+                fault::point("sharpness");
             }
             Ok(())
         })
@@ -154,6 +156,7 @@ pub unsafe extern "C" fn welt_mesh_set_vertex_sharpness(
         mesh.change(|mesh| {
             for (&vertex, &sharpness) in vertices.iter().zip(sharpness) {
                 mesh.set_vertex_sharpness(VertexId(vertex), sharpness);
+                fault::point("sharpness");
             }
             Ok(())
         })
@@ -198,6 +201,7 @@ pub unsafe extern "C" fn welt_mesh_set_holes(
             }
             for &face in holes {
                 mesh.set_hole(FaceId(face), true);
+                fault::point("holes");
             }
             Ok(())
         })

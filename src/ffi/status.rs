@@ -20,5 +20,6 @@ pub const WELT_ERROR_INTERNAL: i32 = -7;
 pub const WELT_ERROR_FILE: i32 = -8;
 /// A text or a file cannot be understood: the places of the error have file, line and column.
 pub const WELT_ERROR_SYNTAX: i32 = -9;
-/// A rule failed, or the rules do not come to an end; the message names rule and place. The mesh is as it was before.
+/// A rule failed, or the rules do not come to an end, or, where that is asked for, a mark is left that no rule handles; the
+/// message names rule and place. The mesh is as it was before.
 pub const WELT_ERROR_RULE: i32 = -10;

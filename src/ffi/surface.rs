@@ -7,16 +7,15 @@ use super::failure::Failure;
 use super::feature::method;
 use super::job::WeltJob;
 use super::mesh::{WeltMesh, mesh_of};
-use super::report::WeltReport;
+use super::report::{WeltReport, hand_over};
 use crate::job::Job;
 use crate::mesh::{FaceId, VertexId};
 use crate::optimise::{self, Target};
 use crate::subdivision::SurfacePoint;
-use glam::DVec3;
 
 /// A limit surface, frozen: it stays as it is when its mesh changes. Never changes.
 pub struct WeltSurface {
-    target: Target,
+    pub(super) target: Target,
 }
 
 /// Freezes the limit surface of a mesh.
@@ -24,20 +23,23 @@ pub struct WeltSurface {
 /// mesh: must not be NULL.
 /// faces: the faces whose surface is frozen, 0-based; NULL for all. Cost follows their number.
 /// count: number of faces; 0 where faces is NULL.
+/// job: may be NULL.
 /// surface: receives the handle; free it with welt_surface_free.
 ///
-/// Fails with WELT_ERROR_ARGUMENT where a face does not exist. Since: 0.1.
+/// Fails with WELT_ERROR_ARGUMENT where a face does not exist, and with WELT_ERROR_CANCELLED. Since: 0.1.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn welt_surface_create(
     mesh: *const WeltMesh,
     faces: *const u32,
     count: usize,
+    job: *const WeltJob,
     surface: *mut *mut WeltSurface,
     error: *mut *mut WeltError,
 ) -> i32 {
     let body = || {
-        // SAFETY: the header asks for a living mesh, an array of this count and a place for the handle.
-        let (mesh, output) = unsafe { (mesh_of(mesh)?, Output::new(surface, "surface")?) };
+        // SAFETY: the header asks for a living mesh, an array of this count, a job or NULL and a place for the handle.
+        let (mesh, job, output) =
+            unsafe { (mesh_of(mesh)?, arguments::optional(job, "job")?, Output::new(surface, "surface")?) };
         let faces: Vec<FaceId> = if faces.is_null() {
             mesh.faces().collect()
         } else {
@@ -47,7 +49,9 @@ pub unsafe extern "C" fn welt_surface_create(
         if let Some(missing) = faces.iter().find(|f| f.is_boundary() || !mesh.has_face(**f)) {
             return Err(Failure::argument(format!("face {} does not exist", missing.0)));
         }
-        output.handle(WeltSurface { target: Target::freeze(mesh, &faces) });
+        let idle = Job::new();
+        let job = job.map_or(&idle, |job| &job.job);
+        output.handle(WeltSurface { target: Target::freeze(mesh, &faces, job)? });
         Ok(())
     };
     // SAFETY: the header asks for NULL or a place for an error.
@@ -61,25 +65,19 @@ pub unsafe extern "C" fn welt_surface_free(surface: *mut WeltSurface) {
     unsafe { arguments::free(surface) };
 }
 
-/// Evaluates the limit surface at parameters of faces.
+/// Curvature of the limit surface at parameters of faces.
 ///
-/// surface: must not be NULL.
-/// faces: the face of each point.
-/// corners: the patch of each point; NULL for 0 everywhere. A quad has patch 0 only, another face one per corner.
-/// parameters: u and v of each point, in [0, 1]; what lies outside is moved to the nearest inside. On a quad (0, 0) is its
-/// first corner, u runs along the first edge and v against the last one. On patch c of another face (0, 0) is corner c,
-/// (1, 0) the middle of the edge that leaves it, (0, 1) that of the edge that arrives, (1, 1) the face point.
-/// count: number of points.
-/// values: receives per point the position, the derivatives by u and by v, and those by u twice, by u and v, by v twice: 18
-/// doubles. At an extraordinary vertex the first derivatives are tangents of conventional length, and the second ones,
-/// which are not defined, are NaN. Where the surface has no part of the face, which may not have been frozen or is a hole
-/// or left out by the boundary rule, all are NaN.
-/// capacity: room in values, at least 18 * count doubles.
+/// surface, faces, corners, parameters, count: as for welt_surface_evaluate.
+/// values: receives per point 10 doubles: the principal curvatures, the greater first; the unit tangents along which the normal
+/// curvature takes these values; mean and Gaussian curvature. Curvature is positive where the surface bends towards its
+/// normal: a sphere of radius r whose normals point outwards has -1/r, in units of the model. All are NaN at an extraordinary vertex, where curvature is
+/// not defined, where the tangents span no plane, and where the surface has no part of the face.
+/// capacity: room in values, at least 10 * count doubles.
 ///
 /// Fails with WELT_ERROR_ARGUMENT where a face has no such patch, or a parameter is NaN. Since: 0.1.
 #[unsafe(no_mangle)]
 #[allow(clippy::too_many_arguments)]
-pub unsafe extern "C" fn welt_surface_evaluate(
+pub unsafe extern "C" fn welt_surface_curvature(
     surface: *const WeltSurface,
     faces: *const u32,
     corners: *const u32,
@@ -90,49 +88,68 @@ pub unsafe extern "C" fn welt_surface_evaluate(
     error: *mut *mut WeltError,
 ) -> i32 {
     let body = || {
-        let too_large = || Failure::argument(format!("count is {count}, which is too large"));
-        let needed = count.checked_mul(18).ok_or_else(too_large)?;
         // SAFETY: the header asks for a living surface, arrays of this count and a buffer of this capacity.
-        let (surface, faces, parameters, buffer) = unsafe {
-            (
-                arguments::handle(surface, "surface")?,
-                arguments::array(faces, count, "faces")?,
-                arguments::array(parameters, 2 * count, "parameters")?,
-                Buffer::new(values, capacity, needed, "values")?,
-            )
-        };
-        let corners = if corners.is_null() {
-            &[]
-        } else {
-            // SAFETY: not NULL; the header asks for an array of this count.
-            unsafe { arguments::array(corners, count, "corners") }?
-        };
-        let surface = &surface.target.surface;
-        let mut found = Vec::with_capacity(count);
-        for (i, (&face, uv)) in faces.iter().zip(parameters.chunks_exact(2)).enumerate() {
-            let corner = corners.get(i).copied().unwrap_or(0) as usize;
-            let patches = surface.patch_count(FaceId(face));
-            if patches > 0 && corner >= patches {
-                return Err(Failure::argument(format!("face {face} has no patch {corner}")));
-            }
-            if uv.iter().any(|parameter| parameter.is_nan()) {
-                return Err(Failure::argument(format!("a parameter of point {i} is NaN")));
-            }
-            found.push(jet(surface.evaluate(FaceId(face), corner, uv[0], uv[1])));
-        }
-        buffer.fill(found.iter().flatten().flat_map(|vector| vector.to_array()));
-        Ok(())
+        unsafe { evaluate_each(surface, faces, corners, parameters, count, values, capacity, curvature) }
     };
     // SAFETY: the header asks for NULL or a place for an error.
     unsafe { boundary(error, body) }
 }
 
-/// Position, first and second derivatives; NaN for what is not defined.
-fn jet(point: Option<SurfacePoint>) -> [DVec3; 6] {
-    let nowhere = DVec3::NAN;
-    point.map_or([nowhere; 6], |point| {
-        let [uu, uv, vv] = point.second.map_or([nowhere; 3], |second| [second.uu, second.uv, second.vv]);
-        [point.position, point.du, point.dv, uu, uv, vv]
+/// Writes what `value` makes of the points at parameters of faces, N doubles each.
+///
+/// # Safety
+/// As for [`welt_surface_curvature`], with a buffer of `capacity` doubles.
+#[allow(clippy::too_many_arguments)]
+unsafe fn evaluate_each<const N: usize>(
+    surface: *const WeltSurface,
+    faces: *const u32,
+    corners: *const u32,
+    parameters: *const f64,
+    count: usize,
+    values: *mut f64,
+    capacity: usize,
+    value: impl Fn(Option<SurfacePoint>) -> [f64; N],
+) -> Result<(), Failure> {
+    let too_large = || Failure::argument(format!("count is {count}, which is too large"));
+    let needed = count.checked_mul(N).ok_or_else(too_large)?;
+    // SAFETY: the caller vouches for the surface, the arrays and the buffer.
+    let (surface, faces, parameters, buffer) = unsafe {
+        (
+            arguments::handle(surface, "surface")?,
+            arguments::array(faces, count, "faces")?,
+            arguments::array(parameters, 2 * count, "parameters")?,
+            Buffer::new(values, capacity, needed, "values")?,
+        )
+    };
+    let corners = if corners.is_null() {
+        &[]
+    } else {
+        // SAFETY: not NULL; the caller vouches for an array of this count.
+        unsafe { arguments::array(corners, count, "corners") }?
+    };
+    let surface = &surface.target.surface;
+    let mut found = Vec::with_capacity(count);
+    for (i, (&face, uv)) in faces.iter().zip(parameters.chunks_exact(2)).enumerate() {
+        let corner = corners.get(i).copied().unwrap_or(0) as usize;
+        let patches = surface.patch_count(FaceId(face));
+        if patches > 0 && corner >= patches {
+            return Err(Failure::argument(format!("face {face} has no patch {corner}")));
+        }
+        if uv.iter().any(|parameter| parameter.is_nan()) {
+            return Err(Failure::argument(format!("a parameter of point {i} is NaN")));
+        }
+        found.push(value(surface.evaluate(FaceId(face), corner, uv[0], uv[1])));
+    }
+    buffer.fill(found.into_iter().flatten());
+    Ok(())
+}
+
+/// Principal curvatures and directions, mean and Gaussian curvature; NaN where they are not defined.
+fn curvature(point: Option<SurfacePoint>) -> [f64; 10] {
+    point.and_then(|point| point.curvature()).map_or([f64::NAN; 10], |found| {
+        let [[a, b, c], [d, e, f]] = found.directions.map(|direction| direction.to_array());
+        let [first, second] = found.principal;
+        [first, second, a, b, c, d, e, f, found.mean, found.gaussian]
     })
 }
 
@@ -184,22 +201,11 @@ pub unsafe extern "C" fn welt_mesh_fit(
         }
         let idle = Job::new();
         let job = job.map_or(&idle, |job| &job.job);
-        let done = mesh.change(|mesh| {
-            let checkpoint = mesh.begin();
-            match optimise::fit(mesh, &active, &surface.target, method, job) {
-                Ok(done) => {
-                    mesh.commit(checkpoint);
-                    Ok(done)
-                }
-                Err(cancelled) => {
-                    mesh.rollback(checkpoint);
-                    Err(cancelled.into())
-                }
-            }
+        let done = mesh.transact(|mesh| {
+            let done = optimise::fit(mesh, &active, &surface.target, method, job)?;
+            report.is_some().then(|| WeltReport::new(&done)).transpose()
         })?;
-        if let Some(report) = report {
-            report.handle(WeltReport::new(&done)?);
-        }
+        hand_over(report, done);
         Ok(())
     };
     // SAFETY: the header asks for NULL or a place for an error.

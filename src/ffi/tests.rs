@@ -390,22 +390,35 @@ fn sharpness_and_evaluation_check_their_arguments() {
             WELT_OK
         );
         assert_eq!(welt_mesh_set_holes(mesh, [2].as_ptr(), 1, null_mut()), WELT_OK);
-        assert_eq!(welt_surface_create(mesh, null(), 0, &mut surface, null_mut()), WELT_OK);
+        assert_eq!(welt_surface_create(mesh, null(), 0, null(), &mut surface, null_mut()), WELT_OK);
         let (faces, corners, parameters) = ([0u32, 2], [0u32, 1], [0.0f64, 0.0, 0.5, 0.5]);
         let (f, c, p) = (faces.as_ptr(), corners.as_ptr(), parameters.as_ptr());
-        assert_eq!(welt_surface_evaluate(surface, f, c, p, 2, out, 35, &mut error), WELT_ERROR_BUFFER);
+        assert_eq!(
+            welt_surface_evaluate(surface, f, c, p, 2, 2, null(), out, 35, &mut error),
+            WELT_ERROR_BUFFER
+        );
         take(&mut error);
-        assert_eq!(welt_surface_evaluate(surface, f, c, p, 2, out, 36, null_mut()), WELT_OK);
+        assert_eq!(welt_surface_evaluate(surface, f, c, p, 2, 2, null(), out, 36, null_mut()), WELT_OK);
         assert_eq!(values[..3], TETRAHEDRON[..3]);
         assert!(values[18..].iter().all(|value| value.is_nan()));
         assert_eq!(
-            welt_surface_evaluate(surface, f, [3, 0].as_ptr(), p, 2, out, 36, &mut error),
+            welt_surface_evaluate(surface, f, [3, 0].as_ptr(), p, 2, 2, null(), out, 36, &mut error),
             WELT_ERROR_ARGUMENT
         );
         assert_eq!(take(&mut error).1, "face 0 has no patch 3");
+        // Curvature: none at the corner and in the hole, one inside a face, where the shape is convex.
+        assert_eq!(welt_surface_curvature(surface, f, c, p, 2, out, 19, &mut error), WELT_ERROR_BUFFER);
+        take(&mut error);
+        assert_eq!(welt_surface_curvature(surface, f, c, p, 2, out, 36, null_mut()), WELT_OK);
+        assert!(values[..20].iter().all(|value| value.is_nan()));
+        let inside = [0.6, 0.7, 0.5, 0.5];
+        assert_eq!(welt_surface_curvature(surface, f, c, inside.as_ptr(), 1, out, 10, null_mut()), WELT_OK);
+        let [first, second, mean, gaussian] = [0, 1, 8, 9].map(|i| values[i]);
+        assert!(second <= first && first < 0.0);
+        assert!((mean - 0.5 * (first + second)).abs() < 1e-12 && (gaussian - first * second).abs() < 1e-12);
         let nowhere = [f64::NAN; 4];
         assert_eq!(
-            welt_surface_evaluate(surface, f, c, nowhere.as_ptr(), 2, out, 36, &mut error),
+            welt_surface_evaluate(surface, f, c, nowhere.as_ptr(), 2, 2, null(), out, 36, &mut error),
             WELT_ERROR_ARGUMENT
         );
         assert!(take(&mut error).1.contains("NaN"));

@@ -21,6 +21,13 @@ pub extern "C" fn welt_version() -> u32 {
     WELT_VERSION
 }
 
+/// 1 where a program runs with this library that was compiled with a header of this WELT_VERSION and WELT_ABI_VERSION: the
+/// binary interface is the same, and the library is not older than the header. Else 0. Since: 0.1.
+#[unsafe(no_mangle)]
+pub extern "C" fn welt_is_compatible(version: u32, abi_version: u32) -> i32 {
+    i32::from(abi_version == WELT_ABI_VERSION && version <= WELT_VERSION)
+}
+
 /// The version of the library that runs as text, such as "0.1.0". Owned by the library, valid for ever. Since: 0.1.
 #[unsafe(no_mangle)]
 pub extern "C" fn welt_version_string() -> *const c_char {

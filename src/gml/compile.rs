@@ -20,6 +20,13 @@ pub struct Scope<'a> {
     pub read_only: bool,
 }
 
+/// A named piece of script that the scripts below it use as a word: `define name { ... }` of a rule file.
+#[derive(Clone, Debug)]
+pub(crate) struct Definition {
+    pub(crate) name: String,
+    pub(crate) tokens: Vec<(Token, Span)>,
+}
+
 /// Compiles a whole text as one script.
 ///
 /// # Errors
@@ -33,17 +40,19 @@ pub fn compile(
     let mut cursor = Cursor::new(source);
     let tokens = lex::script(&mut cursor, None, &mut errors);
     let end = Span { start: cursor.offset(), end: cursor.offset() };
-    let program = compile_tokens(source, &tokens, end, scope, strings, &mut errors);
+    let program = compile_tokens(source, &tokens, end, scope, &[], strings, &mut errors);
     errors.sort_by_key(Diagnostic::offset);
     if errors.is_empty() { Ok(program) } else { Err(errors) }
 }
 
-/// Compiles the tokens of a script that ends at `end`. Mistakes are added to `errors`.
+/// Compiles the tokens of a script that ends at `end`; it can use `definitions`, and each of these the ones before it.
+/// Mistakes are added to `errors`.
 pub(crate) fn compile_tokens(
     source: &Arc<Source>,
     tokens: &[(Token, Span)],
     end: Span,
     scope: &Scope<'_>,
+    definitions: &[Definition],
     strings: &mut Strings,
     errors: &mut Vec<Diagnostic>,
 ) -> Program {
@@ -54,6 +63,9 @@ pub(crate) fn compile_tokens(
     let mut compiler = Compiler {
         source,
         scope,
+        definitions,
+        known_definitions: definitions.len(),
+        blocks_of_definitions: FxHashMap::default(),
         strings,
         errors,
         defined,
@@ -105,6 +117,11 @@ struct Slot {
 struct Compiler<'a> {
     source: &'a Arc<Source>,
     scope: &'a Scope<'a>,
+    definitions: &'a [Definition],
+    /// How many of them can be used at this place.
+    known_definitions: usize,
+    /// The block of each definition that was used.
+    blocks_of_definitions: FxHashMap<usize, u32>,
     strings: &'a mut Strings,
     errors: &'a mut Vec<Diagnostic>,
     /// Names that `/name` mentions: they may be in a dictionary when the script runs.
@@ -236,6 +253,13 @@ impl Compiler<'_> {
             }
             return self.emit(Op::Word(word), span);
         }
+        let definitions = self.definitions;
+        if let Some(index) = definitions[..self.known_definitions].iter().position(|known| known.name == name)
+        {
+            let block = self.definition(index, span);
+            self.emit(Op::Push(Value::Procedure(block)), span);
+            return self.emit(Op::Word(Word::Exec), span);
+        }
         if self.defined.contains(name) {
             let id = self.strings.intern(name);
             return self.emit(Op::Lookup(id), span);
@@ -247,12 +271,39 @@ impl Compiler<'_> {
         self.error(span, format!("unknown word `{name}`{hint}"));
     }
 
+    /// The block of a definition, compiled at its first use; its operations stand at that place of the text. It sees
+    /// no nodes, no registers of the script around it, and only the definitions above it.
+    fn definition(&mut self, index: usize, span: Span) -> u32 {
+        if let Some(&block) = self.blocks_of_definitions.get(&index) {
+            return block;
+        }
+        let number = self.block_count;
+        self.block_count += 1;
+        self.blocks_of_definitions.insert(index, number);
+        let outer_definitions = std::mem::replace(&mut self.known_definitions, index);
+        self.open.push(OpenBlock {
+            number,
+            ops: Vec::new(),
+            spans: Vec::new(),
+            start: span,
+            registers: None,
+        });
+        let definitions = self.definitions;
+        for (token, _) in &definitions[index].tokens {
+            self.token(token, span);
+        }
+        self.end_block(span);
+        self.known_definitions = outer_definitions;
+        number
+    }
+
     /// The known name that is most like `name`, if any is alike.
     fn nearest(&self, name: &str) -> Option<String> {
         let known = (Word::ALL.iter().map(|word| word.signature().name))
             .chain(["usereg"])
             .chain(self.scope.nodes.iter().map(|node| node.0.as_str()))
-            .chain(self.scope.parameters.iter().map(String::as_str));
+            .chain(self.scope.parameters.iter().map(String::as_str))
+            .chain(self.definitions.iter().map(|known| known.name.as_str()));
         nearest(name, known)
     }
 

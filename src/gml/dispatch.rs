@@ -129,6 +129,7 @@ impl Execution<'_, '_, '_> {
             W::MakeEv => self.make_ev(),
             W::MakeEvOne => self.make_ev_one(),
             W::MakeEf => self.make_ef(),
+            W::MakeFaces => self.make_faces(),
             W::KillEf => self.kill(Mesh::kill_ef),
             W::KillEv => self.kill(Mesh::kill_ev),
             W::KillVefs => self.kill(Mesh::kill_vefs),

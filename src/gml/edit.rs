@@ -3,7 +3,7 @@
 use super::kind::Kinds;
 use super::machine::{Execution, Fault, error};
 use super::value::Value;
-use crate::mesh::{EulerError, HalfEdgeId, Mesh, Node, VertexId};
+use crate::mesh::{Corner, EulerError, HalfEdgeId, Mesh, Node, VertexId};
 use glam::DVec3;
 
 /// Sharpness from which on an edge or a vertex is infinitely sharp (OpenSubdiv's scale).
@@ -45,6 +45,39 @@ impl Execution<'_, '_, '_> {
         let made = self.environment.mesh.make_ef(e0, e1);
         let n = self.euler(made)?;
         self.push_half_edge(n)
+    }
+
+    /// `e points faces makeFaces`: tiles the face of e; see [`Mesh::tile_face`].
+    pub(super) fn make_faces(&mut self) -> Result<(), Fault> {
+        let faces = self.pop_array()?;
+        let points = self.pop_array()?;
+        let e = self.pop_half_edge()?;
+        let heap = &self.machine.heap;
+        let positions: Option<Vec<DVec3>> = (heap.array(points).iter())
+            .map(|value| if let Value::Vec3(p) = value { Some(*p) } else { None })
+            .collect();
+        let positions = positions.ok_or_else(|| error("makeFaces needs an array of points"))?;
+        let corner = |value: &Value| match value {
+            Value::Number(x) if *x >= 0.0 && x.fract() == 0.0 => Some(Corner::Inner(*x as usize)),
+            Value::Node(Node::Vertex(v)) => Some(Corner::Vertex(*v)),
+            _ => None,
+        };
+        let faces: Option<Vec<Vec<Corner>>> = (heap.array(faces).iter())
+            .map(|face| match face {
+                Value::Array(corners) => heap.array(*corners).iter().map(corner).collect(),
+                _ => None,
+            })
+            .collect();
+        let faces = faces.ok_or_else(|| {
+            error("makeFaces needs an array of faces, each an array of vertices and of numbers of points")
+        })?;
+        let corners: usize = faces.iter().map(Vec::len).sum();
+        // Each round of the tiling looks at all faces that are left.
+        self.environment.budget.spend_many((corners * faces.len().max(1)) as u64)?;
+        self.environment.budget.edit(2 * corners as u64)?;
+        let tiled = self.environment.mesh.tile_face(e, &positions, &faces);
+        let inner = tiled.map_err(|problem| error(format!("makeFaces: {problem}")))?;
+        self.push_array(inner.into_iter().map(|v| Value::Node(Node::Vertex(v))).collect())
     }
 
     pub(super) fn kill(

@@ -31,7 +31,7 @@ pub use source::{Diagnostic, Severity, Source, Span};
 pub use value::Value;
 
 pub(crate) use check::{Effects, Leaves, check};
-pub(crate) use compile::{compile_tokens, is_word};
+pub(crate) use compile::{Definition, compile_tokens, is_word};
 pub(crate) use lex::{Cursor, script};
 pub(crate) use program::Op;
 pub(crate) use word::Word;

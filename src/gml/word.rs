@@ -195,6 +195,7 @@ words! {
     MakeEv "makeEV" [HE, HE, VEC3] => gives(&[HE]), true;
     MakeEvOne "makeEVone" [HE, VEC3] => gives(&[HE]), true;
     MakeEf "makeEF" [HE, HE] => gives(&[HE]), true;
+    MakeFaces "makeFaces" [HE, ARR, ARR] => gives(&[ARR]), true;
     KillEf "killEF" [HE] => gives(&[]), true;
     KillEv "killEV" [HE] => gives(&[]), true;
     KillVefs "killVEFS" [HE] => gives(&[]), true;

@@ -5,7 +5,8 @@ use super::pattern::{Pattern, infer_kinds};
 use super::plan::{Graph, NodePlan, Step, edges, number_tests};
 use super::ruleset::{Forbidden, Input, Loader, Parameter, Rule, RuleSet};
 use crate::gml::{
-    Cursor, Diagnostic, Effects, Leaves, Scope, Source, Span, Strings, check, compile_tokens, is_word, script,
+    Cursor, Definition, Diagnostic, Effects, Leaves, Scope, Source, Span, Strings, check, compile_tokens,
+    is_word, script,
 };
 use crate::mesh::{Domain, Value};
 use glam::DVec3;
@@ -18,7 +19,10 @@ const LONGEST: usize = 1 << 24;
 /// Parameters and rules that a rule set may have.
 const MOST_PARAMETERS: usize = 1000;
 const MOST_RULES: usize = 10_000;
-const KEYWORDS: [&str; 7] = ["example", "include", "input", "parameter", "phase", "rule", "straight"];
+/// Definitions may use one another in a row, which takes a call each to read.
+const MOST_DEFINITIONS: usize = 300;
+const KEYWORDS: [&str; 8] =
+    ["define", "example", "include", "input", "parameter", "phase", "rule", "straight"];
 
 pub(super) fn parse(name: &str, text: &str, loader: &Loader<'_>) -> Result<RuleSet, RulesError> {
     let mut reader = Reader {
@@ -27,6 +31,7 @@ pub(super) fn parse(name: &str, text: &str, loader: &Loader<'_>) -> Result<RuleS
         loader,
         finished: Vec::new(),
         open: Vec::new(),
+        definitions: Vec::new(),
         phase: String::new(),
         known_phases: Vec::new(),
     };
@@ -59,6 +64,7 @@ struct Reader<'a> {
     finished: Vec<String>,
     /// Files that are being read.
     open: Vec<String>,
+    definitions: Vec<Definition>,
     phase: String,
     known_phases: Vec<String>,
 }
@@ -106,6 +112,7 @@ impl Reader<'_> {
                 Ok(())
             }
             "parameter" => self.parameter(cursor),
+            "define" => self.define(cursor),
             "phase" => {
                 let (name, span) = expect_name(cursor, "the name of a phase")?;
                 if self.known_phases.contains(&name) {
@@ -229,6 +236,32 @@ impl Reader<'_> {
         Ok(())
     }
 
+    /// A definition is compiled on its own for its mistakes; what it does to the stack is checked where it is used.
+    fn define(&mut self, cursor: &mut Cursor) -> Result<(), Diagnostic> {
+        let source = Arc::clone(cursor.source());
+        let (name, span) = expect_name(cursor, "the name of a definition")?;
+        if self.definitions.iter().any(|known| known.name == name) {
+            return Err(cursor.error(span, format!("`{name}` is defined twice")));
+        }
+        if self.definitions.len() == MOST_DEFINITIONS {
+            return Err(cursor.error(span, format!("there are more than {MOST_DEFINITIONS} definitions")));
+        }
+        check_free(cursor, &name, span)?;
+        let brace = expect_brace(cursor, "a script")?;
+        let tokens = script(cursor, Some(brace), &mut self.errors);
+        let end = cursor.offset();
+        let end = Span { start: end.saturating_sub(1), end };
+        let scope = Scope { nodes: &[], parameters: &self.parameter_names(), read_only: false };
+        let strings = &mut self.rules.strings;
+        compile_tokens(&source, &tokens, end, &scope, &self.definitions, strings, &mut self.errors);
+        self.definitions.push(Definition { name, tokens });
+        Ok(())
+    }
+
+    fn parameter_names(&self) -> Vec<String> {
+        self.rules.parameters.iter().map(|p| p.name.clone()).collect()
+    }
+
     fn rule(&mut self, cursor: &mut Cursor) -> Result<(), Diagnostic> {
         let source = Arc::clone(cursor.source());
         let (name, span) = expect_name(cursor, "the name of a rule")?;
@@ -271,7 +304,7 @@ impl Reader<'_> {
         let mut forbidden = Vec::new();
         let mut conditions = Vec::new();
         let mut effects = Effects::default();
-        let parameters: Vec<String> = self.rules.parameters.iter().map(|p| p.name.clone()).collect();
+        let parameters = self.parameter_names();
         let action = loop {
             cursor.skip_space();
             let start = cursor.offset();
@@ -331,7 +364,15 @@ impl Reader<'_> {
                     let scope = Scope { nodes: &nodes, parameters: &parameters, read_only: part == "where" };
                     let strings = &mut self.rules.strings;
                     let mistakes = self.errors.len();
-                    let program = compile_tokens(&source, &tokens, end, &scope, strings, &mut self.errors);
+                    let program = compile_tokens(
+                        &source,
+                        &tokens,
+                        end,
+                        &scope,
+                        &self.definitions,
+                        strings,
+                        &mut self.errors,
+                    );
                     if mistakes == self.errors.len() {
                         let leaves = if part == "action" { Leaves::Nothing } else { Leaves::OneNumber };
                         let checked = check(&program, leaves);
@@ -380,6 +421,9 @@ impl Reader<'_> {
             return Err(
                 cursor.error(span, format!("`{name}` is a parameter; a node needs a name of its own"))
             );
+        }
+        if self.definitions.iter().any(|definition| definition.name == name) {
+            return Err(cursor.error(span, format!("`{name}` is defined above; a node needs another name")));
         }
         Ok(())
     }

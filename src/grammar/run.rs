@@ -6,6 +6,7 @@ use super::queue::Queue;
 use super::ruleset::{Examples, Rule, RuleSet};
 use super::search::{Search, View, bind};
 use super::trace::{Application, Pass, Tracer, digest};
+use crate::fault;
 use crate::gml::{Budget, Environment, Failure, Fault, Machine, Program, Stop, Value};
 use crate::job::{Cancelled, Job};
 use crate::mesh::{Checkpoint, FaceId, Mesh, Node, Symbol};
@@ -420,6 +421,7 @@ impl<'a> Run<'a> {
         }
         self.counts[number] += 1;
         self.total += 1;
+        fault::point("rules");
         self.after(number, before);
         Ok(())
     }

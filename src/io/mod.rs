@@ -22,6 +22,7 @@ pub use report::{Ignored, IgnoredKind, ImportReport, Repair};
 pub use save::save;
 pub use source::Source;
 
+use crate::fault;
 use crate::mesh::Mesh;
 use std::path::Path;
 
@@ -129,6 +130,7 @@ pub fn read_bytes(
     bytes: &[u8],
     options: &ImportOptions,
 ) -> Result<Source, ImportError> {
+    fault::point("read");
     let mut source = match format {
         Format::Obj => obj::read(name, bytes, &options.limits)?,
         Format::Ply => ply::read(name, bytes, &options.limits)?,

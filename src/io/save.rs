@@ -1,6 +1,7 @@
 //! Writing a file so that it is either there whole or as it was.
 
 use super::error::ExportError;
+use crate::fault;
 use std::fs::{self, File, OpenOptions};
 use std::io::{self, BufWriter};
 use std::path::{Path, PathBuf};
@@ -46,25 +47,33 @@ pub fn save(
         handle.sync_all()?;
         // A file that is replaced keeps its permissions.
         if let Some(before) = before {
-            fs::set_permissions(&temporary, before.permissions())?;
+            fs::set_permissions(&temporary.0, before.permissions())?;
         }
-        fs::rename(&temporary, path)
+        fault::point("write");
+        fs::rename(&temporary.0, path)
     });
-    result.map_err(|source| {
-        // The first error is the one to report; a temporary file that cannot be removed is no worse.
-        let _ = fs::remove_file(&temporary);
-        failed(source)
-    })
+    result.map_err(failed)
+}
+
+/// A temporary file, which is removed at the end, also when writing panics, unless it was renamed.
+struct Temporary(PathBuf);
+
+impl Drop for Temporary {
+    fn drop(&mut self) {
+        // What went wrong before is what counts; a file that cannot be removed is no worse.
+        let _ = fs::remove_file(&self.0);
+    }
 }
 
 fn fill(handle: File, write: impl FnOnce(&mut BufWriter<File>) -> io::Result<()>) -> io::Result<File> {
     let mut out = BufWriter::with_capacity(1 << 16, handle);
     write(&mut out)?;
+    fault::point("write");
     out.into_inner().map_err(io::IntoInnerError::into_error)
 }
 
 /// Creates a file that was not there, named after `path`.
-fn create_temporary(folder: &Path, path: &Path) -> io::Result<(PathBuf, File)> {
+fn create_temporary(folder: &Path, path: &Path) -> io::Result<(Temporary, File)> {
     const ATTEMPTS: u32 = 1000;
     let name =
         path.file_name().ok_or_else(|| io::Error::new(io::ErrorKind::InvalidInput, "it has no name"))?;
@@ -73,7 +82,7 @@ fn create_temporary(folder: &Path, path: &Path) -> io::Result<(PathBuf, File)> {
         temporary.push(format!(".{}-{attempt}.tmp", std::process::id()));
         let temporary = folder.join(temporary);
         match OpenOptions::new().write(true).create_new(true).open(&temporary) {
-            Ok(handle) => return Ok((temporary, handle)),
+            Ok(handle) => return Ok((Temporary(temporary), handle)),
             Err(error) if error.kind() == io::ErrorKind::AlreadyExists => {}
             Err(error) => return Err(error),
         }

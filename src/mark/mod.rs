@@ -7,6 +7,7 @@
 mod curve;
 mod file;
 mod orient;
+pub mod parity;
 mod path;
 mod resolve;
 mod selector;
@@ -16,6 +17,7 @@ pub use orient::{Chains, orient};
 pub use resolve::{MarkError, Selection, StopReason, StripEnd};
 pub use selector::{Selector, SelectorError, Shape};
 
+use crate::fault;
 use crate::mesh::{HalfEdgeId, Mesh, Node, Value};
 
 /// The kind of a mark that names none, as in the paper's figures.
@@ -43,6 +45,7 @@ pub fn place(mesh: &mut Mesh, marks: &[Mark]) {
             let node = Node::HalfEdge(h);
             mesh.set_attribute(node, color, Some(Value::text(&mark.kind)));
             mesh.set_attribute(node, t, Some(Value::Number(along)));
+            fault::point("mark");
         }
     }
 }

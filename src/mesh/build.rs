@@ -8,6 +8,7 @@ use super::defect::{Defect, Defects};
 use super::ids::{FaceId, NONE};
 use super::polygons::Polygons;
 use super::{HalfEdge, Mesh};
+use crate::fault;
 use rustc_hash::FxHashMap;
 
 /// Edges per vertex that are kept in a list: a pole of a million triangles must not cost its square.
@@ -32,6 +33,7 @@ impl Mesh {
         if !defects.is_empty() {
             return Err(Defects(defects));
         }
+        fault::point("build");
         let mut edges = EdgeTable::new(polygons);
         let mut vertices = vec![NONE; polygons.positions.len()];
         let mut faces = Vec::with_capacity(polygons.face_sizes.len());

@@ -16,6 +16,7 @@ mod ids;
 mod log;
 mod polygons;
 mod scheme;
+mod tile;
 mod transaction;
 mod validate;
 mod value;
@@ -30,6 +31,7 @@ pub use ids::{Domain, FaceId, HalfEdgeId, Node, VertexId};
 pub use log::Checkpoint;
 pub use polygons::{FaceSet, Polygons};
 pub use scheme::{BoundaryRule, Creasing, SubdivisionOptions};
+pub use tile::{Corner, TileError};
 pub use validate::Violation;
 pub use value::Value;
 

@@ -3,6 +3,7 @@
 use super::mask::{RingMask, position_mask, sharp_masks, tangent_masks};
 use super::ring::{LargeFaces, Ring, RingShape};
 use super::sharpness::all_smooth;
+use crate::fault;
 use crate::mesh::{HalfEdgeId, Mesh, VertexId};
 use glam::DVec3;
 use rustc_hash::FxHashMap;
@@ -22,13 +23,17 @@ impl LimitPoint {
     /// The unit normal, or `None` where the tangents do not span a plane.
     pub fn normal(&self) -> Option<DVec3> {
         let noise = ROUNDING * self.position.abs().max_element();
-        if self.tangents.iter().any(|tangent| tangent.abs().max_element() <= noise) {
+        let sizes = self.tangents.map(|tangent| tangent.abs().max_element());
+        if sizes.iter().any(|&size| size <= noise) {
             return None;
         }
-        let [first, second] = self.tangents.map(scaled);
+        // Squares of products of others might overflow or vanish.
+        let harmless = sizes.iter().all(|size| (1e-60..1e60).contains(size));
+        let [first, second] = if harmless { self.tangents } else { self.tangents.map(scaled) };
         let cross = first.cross(second);
-        let length = cross.length();
-        (length > PARALLEL * first.length() * second.length()).then(|| cross / length)
+        let square = cross.length_squared();
+        let least = PARALLEL * PARALLEL * first.length_squared() * second.length_squared();
+        (square > least).then(|| cross / square.sqrt())
     }
 }
 
@@ -71,16 +76,26 @@ pub fn limit_normal(mesh: &Mesh, v: VertexId) -> Option<DVec3> {
 
 /// [`limit_position`] of every vertex id; a removed vertex keeps the position it had.
 pub fn limit_positions(mesh: &Mesh) -> Vec<DVec3> {
+    each_limit_position(mesh).collect()
+}
+
+/// The same, one after the other.
+pub(crate) fn each_limit_position(mesh: &Mesh) -> impl ExactSizeIterator<Item = DVec3> {
     let mut shared = Shared::new(mesh);
     let ids = (0..mesh.vertex_bound() as u32).map(VertexId);
-    ids.map(|v| if mesh.has_vertex(v) { position(mesh, v, &mut shared) } else { mesh.position(v) }).collect()
+    ids.map(move |v| if mesh.has_vertex(v) { position(mesh, v, &mut shared) } else { mesh.position(v) })
 }
 
 /// [`limit_point`] of every vertex id; a removed vertex keeps the position it had and has no tangents.
 pub fn limit_points(mesh: &Mesh) -> Vec<LimitPoint> {
+    each_limit_point(mesh).collect()
+}
+
+/// The same, one after the other.
+pub(crate) fn each_limit_point(mesh: &Mesh) -> impl ExactSizeIterator<Item = LimitPoint> {
     let mut shared = Shared::new(mesh);
     let ids = (0..mesh.vertex_bound() as u32).map(VertexId);
-    ids.map(|v| if mesh.has_vertex(v) { point(mesh, v, &mut shared) } else { fixed(mesh, v) }).collect()
+    ids.map(move |v| if mesh.has_vertex(v) { point(mesh, v, &mut shared) } else { fixed(mesh, v) })
 }
 
 /// What the vertices of one mesh can share.
@@ -93,6 +108,7 @@ struct Shared {
 
 impl Shared {
     fn new(mesh: &Mesh) -> Self {
+        fault::point("limit");
         Self { smooth: all_smooth(mesh), large: LargeFaces::default(), tangents: FxHashMap::default() }
     }
 }

@@ -113,7 +113,7 @@ impl RingMask {
 }
 
 /// The subdominant eigenvalue of a sector of the ring with the angle `theta` between edges.
-pub(super) fn eigenvalue(theta: f64) -> f64 {
+pub(crate) fn eigenvalue(theta: f64) -> f64 {
     let cos = theta.cos();
     (5.0 + cos + (theta * 0.5).cos() * (18.0 + 2.0 * cos).sqrt()) / 16.0
 }

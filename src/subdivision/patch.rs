@@ -50,22 +50,37 @@ pub(crate) fn to_quarter(u: f64, v: f64) -> (usize, f64, f64) {
 impl Jet {
     /// A jet in the parameters of quarter `quarter` as one in the patch's.
     pub(crate) fn in_patch(self, quarter: usize) -> Self {
-        let jet = self.scaled(2.0);
-        let (du, dv) = match quarter {
-            0 => (jet.du, jet.dv),
-            1 => (-jet.dv, jet.du),
-            2 => (-jet.du, -jet.dv),
-            _ => (jet.dv, -jet.du),
+        self.scaled(2.0).turned_back(quarter)
+    }
+
+    /// A jet in the axes of a square that is turned by `turns` quarter turns as one in those of the patch.
+    pub(crate) fn turned_back(self, turns: usize) -> Self {
+        let (du, dv) = match turns % 4 {
+            0 => return self,
+            1 => (-self.dv, self.du),
+            2 => (-self.du, -self.dv),
+            _ => (self.dv, -self.du),
         };
-        let turned = quarter % 2 == 1;
+        let odd = turns % 2 == 1;
         Self {
-            position: jet.position,
+            position: self.position,
             du,
             dv,
-            duu: if turned { jet.dvv } else { jet.duu },
-            duv: if turned { -jet.duv } else { jet.duv },
-            dvv: if turned { jet.duu } else { jet.dvv },
+            duu: if odd { self.dvv } else { self.duu },
+            duv: if odd { -self.duv } else { self.duv },
+            dvv: if odd { self.duu } else { self.dvv },
         }
+    }
+}
+
+/// The parameters (u, v) of a square in the axes of the same square turned by `turns` quarter turns, so that its corner
+/// `turns` becomes the origin.
+pub(crate) fn turn(turns: usize, u: f64, v: f64) -> (f64, f64) {
+    match turns % 4 {
+        0 => (u, v),
+        1 => (v, 1.0 - u),
+        2 => (1.0 - u, 1.0 - v),
+        _ => (1.0 - v, u),
     }
 }
 
@@ -105,14 +120,29 @@ impl Patch {
     /// The patches of a real face: one for a quad, one per corner for another face. Empty for a face that does not
     /// exist or has fewer than three edges.
     pub(crate) fn of_face(mesh: &Mesh, face: FaceId) -> Vec<Self> {
-        let Some(ring) = Ring::new(mesh, face) else {
-            return Vec::new();
-        };
+        Ring::new(mesh, face).map_or(Vec::new(), |ring| Self::of_ring(&ring))
+    }
+
+    /// The patches of the face of `ring`.
+    pub(crate) fn of_ring(ring: &Ring) -> Vec<Self> {
         if ring.arity() == 4 {
-            return vec![Self::of_quad(&ring, false)];
+            return vec![Self::of_quad(ring, false)];
         }
         let refined = ring.refine();
         (0..ring.arity()).map(|corner| Self::of_quad(&ring.child(&refined, corner), false)).collect()
+    }
+
+    /// Evaluates the patch at (u, v) in [0, 1]^2.
+    pub(crate) fn evaluate(&self, u: f64, v: f64) -> Evaluated {
+        match self {
+            Self::Regular(bicubic) => Evaluated::regular(bicubic.jet(u, v)),
+            Self::Corner(corner) => evaluate_corner(corner, u, v),
+            Self::Split(quarters) => {
+                let (quarter, x, y) = to_quarter(u, v);
+                let found = quarters[quarter].evaluate(x, y);
+                Evaluated { jet: found.jet.in_patch(quarter), ..found }
+            }
+        }
     }
 
     /// Recursion ends after 12 levels: sharpness is below 10 or infinite, and then quarters are no longer split.
@@ -121,6 +151,13 @@ impl Patch {
             Class::Regular(bicubic) => Self::Regular(bicubic),
             Class::Corner(corner) => Self::Corner(corner),
             Class::Split => {
+                if let Some(quarters) = ring.smooth_quarters() {
+                    let quarters = quarters.map(|quarter| match quarter.regular_grid() {
+                        Some(grid) => Self::Regular(Bicubic::from_bspline(&grid)),
+                        None => Self::Corner(quarter),
+                    });
+                    return Self::Split(Box::new(quarters));
+                }
                 let refined = ring.refine();
                 Self::Split(Box::new([0, 1, 2, 3].map(|i| Self::of_quad(&ring.child(&refined, i), true))))
             }

@@ -17,8 +17,9 @@ pub(crate) struct Jet {
 /// The piece lies over the middle cell, from `grid[1][1]` to `grid[2][2]`.
 pub(crate) type Grid = [[DVec3; 4]; 4];
 
-/// A bicubic Bezier patch over [0, 1]^2, `points[j][i]` with `i` along u and `j` along v.
+/// A bicubic Bezier patch over [0, 1]^2, `points[j][i]` with `i` along u and `j` along v. Fills six cache lines.
 #[derive(Clone, Copy, PartialEq, Debug)]
+#[repr(align(64))]
 pub(crate) struct Bicubic {
     pub(crate) points: Grid,
 }

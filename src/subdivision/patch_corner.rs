@@ -8,6 +8,7 @@
 use super::dart::DartMasks;
 use super::mask::RingMask;
 use super::patch_bicubic::{Bicubic, Grid, Jet};
+use crate::mesh::{FaceId, VertexId};
 use glam::DVec3;
 use smallvec::SmallVec;
 use std::f64::consts::PI;
@@ -46,6 +47,23 @@ impl Tip {
     }
 }
 
+/// Names the fan of a vertex inside the surface round which nothing is sharp.
+#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
+pub(crate) struct FanKey {
+    pub(crate) centre: Centre,
+    /// How often it was refined.
+    pub(crate) level: u8,
+}
+
+/// Where the vertex of a fan comes from.
+#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
+pub(crate) enum Centre {
+    /// A vertex of the mesh.
+    Vertex(VertexId),
+    /// The face point of a face that is no quad.
+    Face(FaceId),
+}
+
 /// See the [module](self). Spoke `home` runs along u, spoke `home + 1` along v.
 #[derive(Clone, Debug)]
 pub(crate) struct Corner {
@@ -58,6 +76,8 @@ pub(crate) struct Corner {
     pub(crate) spokes: Points,
     /// Per quad the vertex opposite to `vertex`.
     pub(crate) diagonals: Points,
+    /// Corners with the same key have the same `closed`, `tip`, `origin`, `vertex`, `spokes` and `diagonals`.
+    pub(crate) key: Option<FanKey>,
     /// The points of the 4 x 4 grid that the fan does not hold, at (u, v) =
     /// (2,-1) (2,0) (2,1) (2,2) (1,2) (0,2) (-1,2); the first and last are unused beside the boundary.
     pub(crate) outer: [DVec3; 7],
@@ -143,6 +163,12 @@ impl Corner {
         ];
         extend(&mut grid, self.boundary_u(), self.boundary_v());
         grid
+    }
+
+    /// The grid of a quad whose vertex is regular and inside the surface, relative to nothing.
+    pub(crate) fn regular_grid(&self) -> Option<Grid> {
+        let regular = self.closed && self.spokes.len() == 4 && matches!(self.tip, Tip::Moving);
+        regular.then(|| self.grid().map(|row| row.map(|p| p + self.origin)))
     }
 
     /// Replaces the quad by its quarter at the vertex and returns the other three quarters.

@@ -6,9 +6,10 @@
 //! fans are cut down to the sector between them that holds the face.
 
 use super::patch_bicubic::Grid;
-use super::patch_corner::{Corner, Points, Tip};
-use super::sharpness::{Around, Values, is_semi_sharp};
-use crate::mesh::{Creasing, FaceId, HalfEdgeId, Mesh};
+use super::patch_corner::{Centre, Corner, FanKey, Points, Tip};
+use super::patch_direct::place_round;
+use super::sharpness::{Around, Values};
+use crate::mesh::{Creasing, FaceId, HalfEdgeId, Mesh, VertexId};
 use glam::DVec3;
 use smallvec::{SmallVec, smallvec};
 use std::borrow::Cow;
@@ -36,12 +37,16 @@ struct Fan {
     around: Option<Box<Around>>,
     /// What becomes of the vertex where nothing is semi-sharp.
     tip: Tip,
+    /// The same for all faces of a closed fan.
+    key: Option<FanKey>,
 }
 
 /// See the [module](self).
 #[derive(Clone, Debug)]
 pub(crate) struct Ring {
     fans: SmallVec<[Fan; 4]>,
+    /// The ring's own face, on the first level.
+    face: Option<FaceId>,
     /// Face point of the ring's own face.
     centre: DVec3,
     creasing: Creasing,
@@ -54,10 +59,10 @@ pub(crate) struct RefinedFace {
     edges: Points,
 }
 
-fn face_point(mesh: &Mesh, face: FaceId) -> (DVec3, usize) {
+fn face_point(mesh: &Mesh, face: FaceId, position: &impl Fn(VertexId) -> DVec3) -> (DVec3, usize) {
     let (mut sum, mut count) = (DVec3::ZERO, 0);
     for v in mesh.face_vertices(face) {
-        sum += mesh.position(v);
+        sum += position(v);
         count += 1;
     }
     (sum / count as f64, count)
@@ -65,7 +70,8 @@ fn face_point(mesh: &Mesh, face: FaceId) -> (DVec3, usize) {
 
 impl Fan {
     /// The fan at the source of `corner`, a half-edge of the ring's face.
-    fn new(mesh: &Mesh, corner: HalfEdgeId) -> Self {
+    fn new(mesh: &Mesh, corner: HalfEdgeId, position: &impl Fn(VertexId) -> DVec3) -> Self {
+        let vertex = mesh.source(corner);
         let mut first = corner;
         let mut home = 0;
         let mut closed = false;
@@ -73,37 +79,43 @@ impl Fan {
             first = mesh.vertex_cw(first);
             home += 1;
             if first == corner {
-                (closed, home) = (true, 0);
+                closed = true;
                 break;
             }
         }
+        if closed {
+            // All faces round the vertex begin at the same edge, so that they agree to the last bit.
+            first = mesh.vertex_half_edge(vertex).unwrap_or(corner);
+            home = place_round(mesh, corner);
+        }
         let mut fan = Self {
-            vertex: mesh.position(mesh.source(corner)),
+            vertex: position(vertex),
             spokes: Points::new(),
             faces: SmallVec::new(),
             home,
             closed,
             around: None,
             tip: Tip::Moving,
+            key: closed.then_some(FanKey { centre: Centre::Vertex(vertex), level: 0 }),
         };
         let mut spoke = first;
         let mut edges: SmallVec<[HalfEdgeId; 8]> = SmallVec::new();
         loop {
             edges.push(spoke);
-            fan.spokes.push(mesh.position(mesh.target(spoke)));
+            fan.spokes.push(position(mesh.target(spoke)));
             let face = mesh.face(spoke);
             if face.is_boundary() {
                 break;
             }
-            let (point, arity) = face_point(mesh, face);
-            let diagonal = mesh.position(mesh.target(mesh.next(spoke)));
+            let (point, arity) = face_point(mesh, face, position);
+            let diagonal = position(mesh.target(mesh.next(spoke)));
             fan.faces.push(FanFace { point, diagonal, quad: arity == 4 });
             spoke = mesh.vertex_ccw(spoke);
             if spoke == first {
                 break;
             }
         }
-        fan.around = Around::of(mesh, mesh.source(corner), &edges).map(Box::new);
+        fan.around = Around::of(mesh, vertex, &edges).map(Box::new);
         fan
     }
 
@@ -115,7 +127,7 @@ impl Fan {
             FanFace { point: (vertex + spokes[j] + diagonal + spokes[next]) * 0.25, diagonal, quad: true }
         });
         let faces = faces.collect();
-        Self { vertex, spokes, faces, home, closed, around: None, tip: Tip::Moving }
+        Self { vertex, spokes, faces, home, closed, around: None, tip: Tip::Moving, key: None }
     }
 
     fn at(&self, offset: isize, count: usize) -> Option<usize> {
@@ -201,12 +213,10 @@ impl Fan {
 
     /// Sharpness of the half at this vertex of spoke `home + offset`, and of the semi-sharp ones of the others.
     fn half_at(&self, creasing: Creasing, offset: isize) -> (f32, Values) {
-        let (Some(around), Some(j)) = (&self.around, self.spoke_at(offset)) else {
-            return (0.0, Values::new());
-        };
-        let halves = around.halves(creasing);
-        let others = halves.iter().enumerate().filter(|&(i, &s)| i != j && is_semi_sharp(s)).map(|(_, &s)| s);
-        (halves[j], others.collect())
+        match (&self.around, self.spoke_at(offset)) {
+            (Some(around), Some(j)) => around.half_and_others(creasing, j),
+            _ => (0.0, Values::new()),
+        }
     }
 
     /// The fan of the same vertex after one step.
@@ -215,6 +225,7 @@ impl Fan {
         let diagonals: Points = self.faces.iter().map(|face| face.point).collect();
         let mut fan = Self::of_quads(self.vertex_point(creasing), spokes, &diagonals, self.home, self.closed);
         fan.around = self.around.as_ref().map(|around| Box::new(around.refined(creasing)));
+        fan.key = self.key.map(|key| FanKey { level: key.level + 1, ..key });
         fan
     }
 
@@ -222,21 +233,9 @@ impl Fan {
     /// each, and of the semi-sharp edges at its far end.
     fn set_edge(&mut self, creasing: Creasing, places: [usize; 2], halves: [(f32, Values); 2]) {
         // Open fans are sharp at the boundary only.
-        if !self.closed || halves.iter().all(|half| half.0 <= 0.0) {
-            return;
+        if self.closed {
+            self.around = Around::of_edge(creasing, self.spokes.len(), places, halves).map(Box::new);
         }
-        let mut spokes: Values = smallvec![0.0; self.spokes.len()];
-        let mut far: SmallVec<[Values; 2]> = SmallVec::new();
-        if creasing == Creasing::Chaikin && halves.iter().any(|half| is_semi_sharp(half.0)) {
-            far.resize(spokes.len(), Values::new());
-        }
-        for (place, (sharpness, others)) in places.into_iter().zip(halves) {
-            spokes[place] = sharpness;
-            if let Some(far) = far.get_mut(place) {
-                *far = others;
-            }
-        }
-        self.around = Some(Box::new(Around { vertex: 0.0, spokes, far }));
     }
 
     fn is_semi_sharp(&self) -> bool {
@@ -246,28 +245,19 @@ impl Fan {
     /// The part of the fan, in which nothing is semi-sharp, between the infinitely sharp edges on both sides of the
     /// home face.
     fn sector(&self) -> Self {
-        let Some(around) = &self.around else { return self.clone() };
         let mut sector = self.clone();
-        sector.around = None;
-        let sharp = around.infinite_spokes();
+        let Some(around) = sector.around.take() else { return sector };
         let fixed = around.is_fixed();
         if fixed {
             sector.tip = Tip::Fixed;
         }
-        match sharp[..] {
-            [] => return sector,
-            [crease] if !fixed => {
-                sector.tip = Tip::dart(self.faces.len(), crease);
-                return sector;
-            }
-            _ => {}
-        }
         let count = self.spokes.len();
-        let first = sharp.iter().rev().find(|&&j| j <= self.home).or(sharp.last());
-        let last = sharp.iter().find(|&&j| j > self.home).or(sharp.first());
-        let (Some(&first), Some(&last)) = (first, last) else { return sector };
-        let between = (last + count - first) % count;
-        let faces = if between == 0 { count } else { between };
+        let Some((first, faces)) = around.sector(self.home) else {
+            if let ([crease], false) = (&around.infinite_spokes()[..], fixed) {
+                sector.tip = Tip::dart(self.faces.len(), *crease);
+            }
+            return sector;
+        };
         let at = |i: usize| (first + i) % count;
         sector.home = (self.home + count - first) % count;
         sector.spokes = (0..=faces).map(|i| self.spokes[at(i)]).collect();
@@ -280,13 +270,24 @@ impl Fan {
 impl Ring {
     /// The ring of a real face; `None` when the face has fewer than three edges.
     pub(crate) fn new(mesh: &Mesh, face: FaceId) -> Option<Self> {
+        Self::with_positions(mesh, face, &|v| mesh.position(v))
+    }
+
+    /// The same with other positions than those of the mesh.
+    pub(crate) fn with_positions(
+        mesh: &Mesh,
+        face: FaceId,
+        position: &impl Fn(VertexId) -> DVec3,
+    ) -> Option<Self> {
         if face.is_boundary() || !mesh.has_face(face) {
             return None;
         }
-        let fans: SmallVec<[Fan; 4]> = mesh.face_half_edges(face).map(|h| Fan::new(mesh, h)).collect();
+        let fans: SmallVec<[Fan; 4]> =
+            mesh.face_half_edges(face).map(|h| Fan::new(mesh, h, position)).collect();
         (fans.len() >= 3).then(|| Self {
             fans,
-            centre: face_point(mesh, face).0,
+            face: Some(face),
+            centre: face_point(mesh, face, position).0,
             creasing: mesh.subdivision().creasing,
         })
     }
@@ -307,7 +308,7 @@ impl Ring {
             return Cow::Borrowed(self);
         }
         let fans = self.fans.iter().map(Fan::sector).collect();
-        Cow::Owned(Self { fans, centre: self.centre, creasing: self.creasing })
+        Cow::Owned(Self { fans, ..*self })
     }
 
     /// The control grid of a face whose limit is a single bicubic patch: a quad with only regular corners and
@@ -430,13 +431,56 @@ impl Ring {
             let prev_halves = [fan.half_at(creasing, 1), fan_prev.half_at(creasing, 0)];
             at_prev_edge.set_edge(creasing, [0, 2], prev_halves);
         }
-        let spokes = (0..k).map(|j| edge(wrap(prev + j))).collect();
-        let diagonals: Points = (0..k).map(|j| vertex(wrap(corner + j))).collect();
-        let at_centre = Fan::of_quads(self.centre, spokes, &diagonals, 0, true);
+        let spokes = (0..k).map(edge).collect();
+        let diagonals: Points = (0..k).map(|j| vertex(wrap(j + 1))).collect();
+        let mut at_centre = Fan::of_quads(self.centre, spokes, &diagonals, prev, true);
+        at_centre.key = self.face.map(|face| FanKey { centre: Centre::Face(face), level: 0 });
         let fans: SmallVec<[Fan; 4]> =
             smallvec![fan.refined(creasing), at_next_edge, at_centre, at_prev_edge];
         let centre = fans[0].face(0).map_or(fans[0].vertex, |face| face.point);
-        Self { fans, centre, creasing }
+        Self { fans, face: None, centre, creasing }
+    }
+
+    /// The four quarters of a quad inside the surface round which nothing is sharp, as corners whose vertex may be regular.
+    /// `None` for others.
+    pub(crate) fn smooth_quarters(&self) -> Option<[Corner; 4]> {
+        let fans: [&Fan; 4] = match &self.fans[..] {
+            [a, b, c, d] => [a, b, c, d],
+            _ => return None,
+        };
+        if !fans.iter().all(|fan| fan.closed && fan.around.is_none()) {
+            return None;
+        }
+        let vertices = fans.map(|fan| fan.vertex_point(self.creasing));
+        let edges = fans.map(|fan| fan.edge_point_at(self.creasing, 0));
+        Some(std::array::from_fn(|i| {
+            let [next, far, prev] = [1, 2, 3].map(|offset| (i + offset) % 4);
+            let fan = fans[i];
+            let mut corner = Corner {
+                closed: true,
+                tip: Tip::Moving,
+                home: fan.home,
+                key: fan.key.map(|key| FanKey { level: key.level + 1, ..key }),
+                origin: DVec3::ZERO,
+                vertex: vertices[i],
+                spokes: (0..fan.spokes.len()).map(|j| fan.edge_point(self.creasing, j)).collect(),
+                diagonals: fan.faces.iter().map(|face| face.point).collect(),
+                outer: [
+                    fans[next].edge_point_at(self.creasing, 2),
+                    vertices[next],
+                    edges[next],
+                    vertices[far],
+                    edges[far],
+                    vertices[prev],
+                    fans[prev].edge_point_at(self.creasing, -1),
+                ],
+            };
+            // The grid of a regular one is taken as it is.
+            if corner.spokes.len() != 4 {
+                corner.recentre();
+            }
+            corner
+        }))
     }
 
     /// A child quad, a ring of sectors, as a [`Corner`] at its corner 0. The other corners must be regular, which holds
@@ -450,6 +494,7 @@ impl Ring {
             closed: fan.closed,
             tip: fan.tip.clone(),
             home: fan.home,
+            key: fan.key.filter(|_| fan.closed && matches!(fan.tip, Tip::Moving)),
             origin: DVec3::ZERO,
             vertex: fan.vertex,
             spokes: fan.spokes.clone(),

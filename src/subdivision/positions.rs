@@ -5,6 +5,7 @@
 
 use super::refinement::Refinement;
 use super::topology::Level;
+use crate::fault;
 use glam::DVec3;
 
 impl Refinement {
@@ -14,6 +15,7 @@ impl Refinement {
     /// When `level` is the last one, or `positions` has not one entry per vertex of `level`.
     pub fn refine_positions(&self, level: usize, positions: &[DVec3], next: &mut Vec<DVec3>) {
         assert!(level < self.depth(), "level {level} is the last one");
+        fault::point("refine");
         let exceptions = self.exceptions(level);
         let level = self.level(level);
         assert_eq!(positions.len(), level.vertex_count(), "one position per vertex");

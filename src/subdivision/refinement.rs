@@ -3,6 +3,7 @@
 use super::exceptions::{Exceptions, LevelSharpness};
 use super::sharpness::has_limit;
 use super::topology::{BoundaryEdge, Level};
+use crate::fault;
 use crate::mesh::{BoundaryRule, Creasing, FaceId, HalfEdgeId, Mesh, Polygons, SubdivisionOptions, VertexId};
 use glam::DVec3;
 
@@ -94,6 +95,7 @@ impl Refinement {
         let mut sharpness = vec![LevelSharpness::of(mesh, &ids)];
         let mut exceptions = Vec::with_capacity(depth);
         for level in 1..=depth {
+            fault::point("refine");
             let parent = &levels[level - 1];
             let (found, next) = sharpness[level - 1].refined(parent, subdivision.creasing);
             exceptions.push(found);

@@ -1,10 +1,11 @@
 //! The closest point: branch and bound over the pieces, Newton's method where it is certain.
 
 use super::convexity::View;
-use super::freeze::{CornerEntry, Domain};
+use super::index::{Domain, Item, Rest};
 use super::minimise::minimise;
 use super::tree::Content;
-use super::{Bicubic, LimitSurface};
+use super::{Bicubic, LimitSurface, Parameter};
+use crate::fault;
 use crate::mesh::FaceId;
 use crate::subdivision::patch_corner::Points;
 use glam::DVec3;
@@ -105,6 +106,24 @@ impl LimitSurface {
     ///
     /// At a point that is equally far from many points of the surface (the centre of a sphere) one of them.
     pub fn closest(&self, point: DVec3, options: &ClosestOptions) -> Option<Foot> {
+        fault::point("closest");
+        self.closest_within(point, options, f64::INFINITY)
+    }
+
+    /// The same point, sooner where `start` is near it; a start that is no place of the surface is passed over.
+    pub fn closest_from(&self, start: Parameter, point: DVec3, options: &ClosestOptions) -> Option<Foot> {
+        let Parameter { face, corner, u, v } = start;
+        let near = || {
+            let place = self.evaluate(face, corner as usize, u, v)?;
+            let foot = self.foot_near(face, corner as usize, u, v, point);
+            Some(foot.map_or(f64::INFINITY, |foot| foot.distance).min(place.position.distance(point)))
+        };
+        let bound = if options.facing.is_none() { near() } else { None };
+        self.closest_within(point, options, bound.unwrap_or(f64::INFINITY))
+    }
+
+    /// `bound` is a distance that some point of the surface has, or infinity.
+    fn closest_within(&self, point: DVec3, options: &ClosestOptions, bound: f64) -> Option<Foot> {
         let near_enough = point.abs().max_element() <= FARTHEST;
         if !near_enough || options.radius.is_nan() {
             return None;
@@ -122,7 +141,7 @@ impl LimitSurface {
             facing,
             radius: options.radius,
             best: options.radius,
-            bound: f64::INFINITY,
+            bound,
             found: None,
             aside: f64::INFINITY,
             parts: 0,
@@ -194,12 +213,13 @@ impl Search<'_> {
     /// Visits the pieces, those first that may be nearest.
     fn run(&mut self) {
         let surface = self.surface;
-        let node_entry = |index: u32, point: DVec3| {
-            let node = surface.tree.node(index);
-            Reverse((Nearness(box_distance(node.low, node.high, point)), Goal::Node(index)))
+        let index = surface.index();
+        let node_entry = |number: u32, point: DVec3| {
+            let node = index.tree.node(number);
+            Reverse((Nearness(box_distance(node.low, node.high, point)), Goal::Node(number)))
         };
         let mut open = BinaryHeap::with_capacity(64);
-        if surface.tree.bounds().is_some() {
+        if index.tree.bounds().is_some() {
             open.push(node_entry(0, self.point));
         }
         while let Some(Reverse((Nearness(at_least), goal))) = open.pop() {
@@ -207,23 +227,23 @@ impl Search<'_> {
                 break;
             }
             match goal {
-                Goal::Node(index) => match surface.tree.content(index) {
+                Goal::Node(number) => match index.tree.content(number) {
                     Content::Children(children) => {
                         open.extend(children.map(|child| node_entry(child, self.point)));
                     }
                     Content::Leaf(items) => {
                         open.extend(items.iter().map(|&item| {
-                            let nearness = match surface.pieces.get(item as usize) {
-                                Some(piece) => View::new(&piece.bicubic, self.point).at_least,
-                                None => at_least,
+                            let nearness = match index.item(surface, item) {
+                                Item::Piece(bicubic, _) => View::new(bicubic, self.point).at_least,
+                                Item::Rest(_) => at_least,
                             };
                             Reverse((Nearness(nearness), Goal::Item(item)))
                         }));
                     }
                 },
-                Goal::Item(item) => match surface.pieces.get(item as usize) {
-                    Some(piece) => self.visit(piece.bicubic, DVec3::ZERO, piece.domain),
-                    None => self.visit_corner(&surface.corners[item as usize - surface.pieces.len()]),
+                Goal::Item(item) => match index.item(surface, item) {
+                    Item::Piece(bicubic, domain) => self.visit(*bicubic, DVec3::ZERO, *domain),
+                    Item::Rest(rest) => self.visit_rest(rest),
                 },
             }
         }
@@ -334,24 +354,18 @@ impl Search<'_> {
     }
 
     /// Looks at what lies beside an extraordinary vertex, level by level.
-    fn visit_corner(&mut self, entry: &CornerEntry) {
-        if self.hopeless({
-            let (low, high) = entry.corner.bounds();
-            box_distance(low, high, self.point)
-        }) {
-            return;
-        }
+    fn visit_rest(&mut self, entry: &Rest) {
+        let mut corner = entry.corner(self.surface);
         // The vertex itself; its distance is taken relative to the point, for the precision of small ones.
-        let way = entry.corner.origin - self.point;
+        let way = corner.origin - self.point;
         let unit = entry.normal;
         let aside = (way - unit * way.dot(unit)).length();
-        let position = entry.corner.origin;
+        let position = corner.origin;
         self.offer(way, Found { domain: entry.domain, s: 0.0, t: 0.0, position, normal: unit });
         // Where the vertex is the foot itself, what is left round it differs by rounding only.
         let is_foot = unit != DVec3::ZERO && aside <= self.surface.tolerance;
         let direction = way.normalize_or_zero();
 
-        let mut corner = entry.corner.clone();
         let mut domain = entry.domain;
         let mut scratch = Points::new();
         for _ in 0..MAX_DEPTH {

@@ -1,18 +1,18 @@
 //! How far one limit surface is from another.
 //!
 //! Every face is sampled at the centres of k x k cells; the distance is that to the closest point of the other surface
-//! whose normal is compatible (angle below 90 degrees), signed by that point's normal. Means weigh samples by area.
+//! whose normal is compatible (angle below 90 degrees), signed by that point's normal. Normal and mean curvature are
+//! compared with those at that point. Means weigh samples by area.
 
-use super::LimitSurface;
+use super::{Foot, LimitSurface};
 use crate::job::{Cancelled, Job};
 use crate::mesh::{FaceId, Mesh};
+use crate::threads::in_ranges;
 use glam::DVec3;
 use serde::Serialize;
 
 /// The usual number of samples per side of a face.
 pub const SAMPLES: usize = 8;
-/// More threads than this are not started.
-const MOST_THREADS: usize = 64;
 /// Distances below this share of the size are looked for along the normal first.
 const NEAR: f64 = 0.1;
 
@@ -33,9 +33,14 @@ pub struct DeviationSample {
     pub area: f64,
     /// Distance to the other surface, positive on the side of its normals.
     pub signed: f64,
+    /// Angle between the normals, in degrees; 0 where one surface has none.
+    pub turn: f64,
+    /// Difference of the mean curvatures, here minus there, per model unit; `None` where one has none
+    /// ([`SurfacePoint::curvature`](crate::subdivision::SurfacePoint::curvature)).
+    pub bend: Option<f64>,
 }
 
-/// A summary of samples. Distances in model units.
+/// A summary of samples. Distances in model units, angles in degrees, curvatures per model unit.
 #[derive(Clone, Copy, PartialEq, Default, Debug, Serialize)]
 pub struct Deviation {
     /// Largest distance.
@@ -44,6 +49,13 @@ pub struct Deviation {
     pub rms: f64,
     /// Distance that 95 % of the area does not exceed.
     pub p95: f64,
+    /// Largest angle between the normals.
+    pub normal: f64,
+    /// Largest change of mean curvature. Beside an extraordinary vertex curvature is not bounded, so this figure grows
+    /// with the number of samples there; the next one hardly does.
+    pub curvature_max: f64,
+    /// Root of the mean square change of mean curvature, weighed by area.
+    pub curvature_rms: f64,
     /// Number of samples.
     pub samples: usize,
     /// Where the largest distance is; `None` without samples.
@@ -64,10 +76,17 @@ impl Deviation {
             covered >= 0.95 * area
         });
         let at = samples.iter().max_by(|a, b| a.signed.abs().total_cmp(&b.signed.abs()));
+        let bends = || samples.iter().filter_map(|s| Some((s.bend?.abs(), s.area)));
+        let (bend_square, bend_area) =
+            bends().fold((0.0, 0.0), |(square, sum), (bend, area)| (square + area * bend * bend, sum + area));
+        let root_mean = |square: f64, area: f64| if area > 0.0 { (square / area).sqrt() } else { 0.0 };
         Self {
             max: at.map_or(0.0, |sample| sample.signed.abs()),
-            rms: if area > 0.0 { (square / area).sqrt() } else { 0.0 },
+            rms: root_mean(square, area),
             p95: p95.map_or(0.0, |entry| entry.0),
+            normal: samples.iter().fold(0.0, |most, sample| most.max(sample.turn)),
+            curvature_max: bends().fold(0.0, |most, (bend, _)| most.max(bend)),
+            curvature_rms: root_mean(bend_square, bend_area),
             samples: samples.len(),
             at: at.copied(),
         }
@@ -103,21 +122,12 @@ pub fn deviation_samples(
     job: &Job,
 ) -> Result<Vec<DeviationSample>, Cancelled> {
     let faces: Vec<FaceId> = from.faces().filter(|&face| choose(face)).collect();
-    let available = || std::thread::available_parallelism().map_or(1, usize::from);
-    let threads = if sampling.threads == 0 { available() } else { sampling.threads };
-    let chunk = faces.len().div_ceil(threads.clamp(1, MOST_THREADS)).max(1);
-    let work = |faces: &[FaceId]| sample_faces(from, faces, to, sampling.per_side, job);
-    if chunk >= faces.len() {
-        return work(&faces);
-    }
-    let parts = std::thread::scope(|scope| {
-        let workers: Vec<_> = faces.chunks(chunk).map(|faces| scope.spawn(move || work(faces))).collect();
-        workers.into_iter().map(|worker| worker.join()).collect::<Vec<_>>()
-    });
+    let work = |range: std::ops::Range<usize>| {
+        sample_faces(from, faces.get(range).unwrap_or_default(), to, sampling.per_side, job)
+    };
     let mut samples = Vec::new();
-    for part in parts {
-        // A panic in a worker goes on in the caller's thread.
-        samples.extend(part.unwrap_or_else(|panic| std::panic::resume_unwind(panic))?);
+    for part in in_ranges(faces.len(), sampling.threads, 1, work) {
+        samples.append(&mut part?);
     }
     Ok(samples)
 }
@@ -142,25 +152,42 @@ fn sample_faces(
             for cell in 0..cells * cells {
                 let (u, v) = (((cell % cells) as f64 + 0.5) * width, ((cell / cells) as f64 + 0.5) * width);
                 let Some(point) = from.evaluate(face, corner, u, v) else { continue };
-                let Some(signed) = distance_to(to, point.position, point.normal) else { continue };
+                let Some(foot) = foot_on(to, point.position, point.normal) else { continue };
                 let area = point.du.cross(point.dv).length() * width * width;
-                samples.push(DeviationSample { face, corner, u, v, position: point.position, area, signed });
+                let there =
+                    to.evaluate(foot.face, foot.corner, foot.u, foot.v).and_then(|there| there.curvature());
+                let bend = point.curvature().zip(there).map(|(here, there)| here.mean - there.mean);
+                samples.push(DeviationSample {
+                    face,
+                    corner,
+                    u,
+                    v,
+                    position: point.position,
+                    area,
+                    signed: foot.distance.copysign((point.position - foot.position).dot(foot.normal)),
+                    turn: angle(point.normal, foot.normal),
+                    bend,
+                });
             }
         }
     }
     Ok(samples)
 }
 
-/// [`LimitSurface::signed_distance`], fast where the surfaces are close: the foot near the hit of the sample's normal.
-fn distance_to(to: &LimitSurface, point: DVec3, normal: DVec3) -> Option<f64> {
-    let foot = to
-        .nearest_line_hit(point, normal, NEAR * to.size(), normal)
-        .and_then(|hit| to.foot_near(&hit, point).filter(|foot| foot.distance <= hit.s.abs()))
-        .filter(|foot| foot.normal.dot(normal) > 0.0);
-    match foot {
-        Some(foot) => Some(foot.distance.copysign((point - foot.position).dot(foot.normal))),
-        None => to.signed_distance(point, normal),
-    }
+/// The angle between two unit normals in degrees, 0 when one is zero.
+fn angle(a: DVec3, b: DVec3) -> f64 {
+    a.cross(b).length().atan2(a.dot(b)).to_degrees()
+}
+
+/// [`LimitSurface::compatible_foot`], fast where the surfaces are close: the foot near the hit of the sample's normal.
+fn foot_on(to: &LimitSurface, point: DVec3, normal: DVec3) -> Option<Foot> {
+    to.nearest_line_hit(point, normal, NEAR * to.size(), normal)
+        .and_then(|hit| {
+            to.foot_near(hit.face, hit.corner, hit.u, hit.v, point)
+                .filter(|foot| foot.distance <= hit.s.abs())
+        })
+        .filter(|foot| foot.normal.dot(normal) > 0.0)
+        .or_else(|| to.compatible_foot(point, normal))
 }
 
 /// Two limit surfaces compared both ways.

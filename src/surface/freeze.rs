@@ -1,207 +1,172 @@
 //! Taking the patches of faces out of the mesh.
 
-use super::tree::Tree;
-use super::{Bicubic, Corner, LimitSurface, Patch};
+use super::fans::{Corners, Shared};
+use super::places::{Entry, FaceTable, PatchPlace};
+use super::{Bicubic, LimitSurface, Patch};
 use crate::mesh::{FaceId, Mesh};
 use crate::subdivision::has_limit;
-use crate::subdivision::patch::evaluate_corner;
-use crate::subdivision::patch_corner::{Points, VertexLimit};
+use crate::subdivision::patch_direct::{Direct, is_smooth};
+use crate::subdivision::patch_ring::Ring;
 use crate::subdivision::sharpness::is_infinite;
 use glam::DVec3;
+use std::sync::OnceLock;
 
-/// Levels of pieces that are stored beside an extraordinary vertex; deeper ones are made on demand.
-pub(super) const LEVELS: u32 = 4;
-
-/// Where a piece lies: a square of a patch, turned by quarter turns.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Domain {
-    pub(super) patch: u32,
-    /// Patch parameters of the square's own origin.
-    u: f64,
-    v: f64,
-    /// Quarter turns from the patch's axes to the square's, counter-clockwise.
-    turns: u8,
-    size: f64,
+/// A surface in the making.
+struct Freezing {
+    surface: LimitSurface,
+    shared: Shared,
+    low: DVec3,
+    high: DVec3,
 }
 
-impl Domain {
-    /// Patch parameters of the point (s, t) in [0, 1]^2 of the piece.
-    pub(super) fn parameters(&self, s: f64, t: f64) -> (f64, f64) {
-        let (s, t) = (s * self.size, t * self.size);
-        match self.turns {
-            0 => (self.u + s, self.v + t),
-            1 => (self.u - t, self.v + s),
-            2 => (self.u - s, self.v - t),
-            _ => (self.u + t, self.v - s),
-        }
-    }
+/// Faces between two calls of `step`.
+const SLICE: usize = 256;
 
-    /// The quarter at corner `corner` of the square, whose origin that corner is.
-    fn quarter(&self, corner: u8) -> Self {
-        let (s, t) = [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)][usize::from(corner)];
-        let (u, v) = self.parameters(s, t);
-        Self { u, v, turns: (self.turns + corner) % 4, size: 0.5 * self.size, ..*self }
-    }
-
-    /// Domain of side `side` of the extraordinary quad over this square, after one refinement.
-    pub(super) fn side(&self, side: usize) -> Self {
-        let (s, t) = [(0.5, 0.0), (0.5, 0.5), (0.0, 0.5)][side];
-        let (u, v) = self.parameters(s, t);
-        Self { u, v, size: 0.5 * self.size, ..*self }
-    }
-
-    /// Domain of what remains of the extraordinary quad after one refinement.
-    pub(super) fn inner(&self) -> Self {
-        Self { size: 0.5 * self.size, ..*self }
-    }
-}
-
-#[derive(Clone, Debug)]
-pub(super) struct Piece {
-    pub(super) bicubic: Bicubic,
-    pub(super) domain: Domain,
-}
-
-/// An extraordinary quad at the deepest stored level.
-#[derive(Clone, Debug)]
-pub(super) struct CornerEntry {
-    pub(super) corner: Corner,
-    pub(super) domain: Domain,
-    /// Tangents at the vertex in the parameters of the whole quarter.
-    pub(super) limit: VertexLimit,
-    /// Unit normal at the vertex, zero where there is none.
-    pub(super) normal: DVec3,
-}
-
-/// A patch or a part of one.
-#[derive(Clone, Copy, Debug)]
-pub(super) enum Entry {
-    /// Index of the piece.
-    Regular(u32),
-    /// The pieces of level l are `first_piece + 3 l + side`.
-    Corner { first_piece: u32, corner: u32 },
-    /// Index of the first of the four quarters among the parts.
-    Split(u32),
-}
-
-#[derive(Clone, Copy, Debug)]
-pub(super) struct PatchPlace {
-    pub(super) face: FaceId,
-    pub(super) corner: u32,
-    /// Sides beyond which nothing is frozen, and infinitely sharp ones: bit 0 at v = 0, bit 1 at u = 1, bit 2 at v = 1, bit 3 at u = 0.
-    pub(super) rims: u8,
-}
-
-/// Freezes `faces`, which are ascending, real and exist.
-pub(super) fn freeze(mesh: &Mesh, faces: Vec<FaceId>) -> LimitSurface {
-    let mut frozen = LimitSurface {
-        faces: Vec::with_capacity(faces.len()),
+/// Freezes `faces`, which are ascending, real and exist. `step` is told how much is done, in [0, 1], and may end it.
+pub(super) fn freeze<E>(
+    mesh: &Mesh,
+    faces: &[FaceId],
+    step: impl Fn(f64) -> Result<(), E>,
+) -> Result<LimitSurface, E> {
+    let surface = LimitSurface {
+        faces: FaceTable::with_room_for(faces),
         places: Vec::with_capacity(faces.len()),
         patches: Vec::with_capacity(faces.len()),
         parts: Vec::new(),
-        pieces: Vec::with_capacity(faces.len()),
-        corners: Vec::new(),
-        tree: Tree::default(),
+        bicubics: Vec::with_capacity(faces.len()),
+        corners: Corners::default(),
+        index: OnceLock::new(),
+        closed: true,
         size: 0.0,
         tolerance: 0.0,
     };
-    let mut scratch = Points::new();
-    for &face in faces.iter().filter(|&&face| has_limit(mesh, face)) {
-        let patches = Patch::of_face(mesh, face);
-        if patches.is_empty() {
-            continue;
+    let mut freezing =
+        Freezing { surface, shared: Shared::default(), low: DVec3::INFINITY, high: DVec3::NEG_INFINITY };
+    for (i, &face) in faces.iter().enumerate() {
+        if i % SLICE == 0 {
+            step(i as f64 / faces.len() as f64)?;
         }
-        frozen.faces.push((face, frozen.patches.len() as u32));
-        let count = patches.len();
-        for (corner, patch) in patches.into_iter().enumerate() {
-            let rims = if count == 1 { 0 } else { 0b0110 };
-            frozen.places.push(PatchPlace { face, corner: corner as u32, rims });
-            frozen.add_patch(patch, &mut scratch);
+        if has_limit(mesh, face) {
+            freezing.add_face(mesh, faces, face);
         }
-        mark_rims(&mut frozen, mesh, &faces, face, count);
     }
-    frozen.finish();
-    frozen
+    step(1.0)?;
+    Ok(freezing.finish())
 }
 
-/// Marks the sides of the last face's patches beyond which nothing is frozen, and those along infinite creases.
-fn mark_rims(frozen: &mut LimitSurface, mesh: &Mesh, faces: &[FaceId], face: FaceId, count: usize) {
-    let first = frozen.places.len() - count;
-    for place in &mut frozen.places[first..] {
-        place.rims = 0;
-    }
-    for (i, h) in mesh.face_half_edges(face).enumerate() {
-        let beyond = mesh.face(h.mate());
-        let goes_on =
-            !beyond.is_boundary() && faces.binary_search(&beyond).is_ok() && has_limit(mesh, beyond);
-        if goes_on && !is_infinite(mesh.edge_sharpness(h)) {
-            continue;
+impl Freezing {
+    fn add_face(&mut self, mesh: &Mesh, faces: &[FaceId], face: FaceId) {
+        let first = self.surface.patches.len();
+        match self.smooth_quad(mesh, face) {
+            Some(entry) => self.surface.patches.push(entry),
+            None => {
+                for patch in Patch::of_face(mesh, face) {
+                    let entry = self.add_part(patch);
+                    self.surface.patches.push(entry);
+                }
+            }
         }
-        if count == 1 {
-            frozen.places[first].rims |= 1 << i;
-        } else {
-            frozen.places[first + i].rims |= 1;
-            frozen.places[first + (i + 1) % count].rims |= 1 << 3;
+        let count = self.surface.patches.len() - first;
+        if count > 0 {
+            self.surface.faces.add(face, first as u32);
+            self.surface.places.extend((0..count as u32).map(|corner| PatchPlace { face, corner, rims: 0 }));
+            self.mark_rims(mesh, faces, face, first);
         }
     }
-}
 
-impl LimitSurface {
-    fn add_patch(&mut self, patch: Patch, scratch: &mut Points) {
-        let patch_index = self.patches.len() as u32;
-        let whole = Domain { patch: patch_index, u: 0.0, v: 0.0, turns: 0, size: 1.0 };
-        let entry = self.add_part(patch, whole, scratch);
-        self.patches.push(entry);
+    /// The patch of a quad inside the surface round which nothing is sharp.
+    fn smooth_quad(&mut self, mesh: &Mesh, face: FaceId) -> Option<Entry> {
+        if !is_smooth(mesh, face) {
+            return None;
+        }
+        match Direct::new(mesh, face) {
+            Some(Direct::Regular(grid)) => return Some(self.add_bicubic(Bicubic::from_bspline(&grid))),
+            Some(Direct::Corner { corner, half_edge, outer }) => {
+                if let Some(index) =
+                    self.surface.corners.add_at_vertex(mesh, half_edge, outer, &mut self.shared)
+                {
+                    return Some(self.corner_entry(index, corner));
+                }
+            }
+            None => {}
+        }
+        let quarters = Ring::new(mesh, face)?.smooth_quarters()?;
+        let entries = quarters.map(|quarter| match quarter.regular_grid() {
+            Some(grid) => self.add_bicubic(Bicubic::from_bspline(&grid)),
+            None => {
+                let index = self.surface.corners.add(quarter, &mut self.shared);
+                self.corner_entry(index, 0)
+            }
+        });
+        self.surface.parts.extend(entries);
+        Some(Entry::Split(self.surface.parts.len() as u32 - 4))
     }
 
     /// Recursion is as deep as patches are split, 12 levels at most.
-    fn add_part(&mut self, patch: Patch, domain: Domain, scratch: &mut Points) -> Entry {
+    fn add_part(&mut self, patch: Patch) -> Entry {
         match patch {
-            Patch::Regular(bicubic) => Entry::Regular(self.add_piece(bicubic, domain)),
-            Patch::Corner(corner) => self.add_corner(corner, domain, scratch),
+            Patch::Regular(bicubic) => self.add_bicubic(bicubic),
+            Patch::Corner(corner) => {
+                let index = self.surface.corners.add(corner, &mut self.shared);
+                self.corner_entry(index, 0)
+            }
             Patch::Split(quarters) => {
-                let mut place = 0;
-                let entries = quarters.map(|quarter| {
-                    place += 1;
-                    self.add_part(quarter, domain.quarter(place - 1), scratch)
-                });
-                self.parts.extend(entries);
-                Entry::Split(self.parts.len() as u32 - 4)
+                let entries = quarters.map(|quarter| self.add_part(quarter));
+                self.surface.parts.extend(entries);
+                Entry::Split(self.surface.parts.len() as u32 - 4)
             }
         }
     }
 
-    fn add_piece(&mut self, bicubic: Bicubic, domain: Domain) -> u32 {
-        self.pieces.push(Piece { bicubic, domain });
-        self.pieces.len() as u32 - 1
+    fn add_bicubic(&mut self, bicubic: Bicubic) -> Entry {
+        let (low, high) = bicubic.bounds();
+        self.enclose(low, high);
+        self.surface.bicubics.push(bicubic);
+        Entry::Regular(self.surface.bicubics.len() as u32 - 1)
     }
 
-    fn add_corner(&mut self, mut corner: Corner, mut domain: Domain, scratch: &mut Points) -> Entry {
-        let first_piece = self.pieces.len() as u32;
-        let limit = corner.vertex_limit();
-        let normal = evaluate_corner(&corner, 0.0, 0.0).normal;
-        for _ in 0..LEVELS {
-            let sides = corner.refine(scratch);
-            for (side, grid) in sides.iter().enumerate() {
-                let grid = grid.map(|row| row.map(|p| p + corner.origin));
-                self.add_piece(Bicubic::from_bspline(&grid), domain.side(side));
+    fn corner_entry(&mut self, corner: u32, turns: u8) -> Entry {
+        let (low, high) = self.surface.corners.bounds(corner);
+        self.enclose(low, high);
+        Entry::Corner { corner, turns }
+    }
+
+    fn enclose(&mut self, low: DVec3, high: DVec3) {
+        (self.low, self.high) = (self.low.min(low), self.high.max(high));
+    }
+
+    /// Marks the sides of the last face's patches, from `first` on, beyond which nothing is frozen, and those along infinite
+    /// creases.
+    fn mark_rims(&mut self, mesh: &Mesh, faces: &[FaceId], face: FaceId, first: usize) {
+        let places = &mut self.surface.places[first..];
+        let count = places.len();
+        for (i, h) in mesh.face_half_edges(face).enumerate() {
+            let beyond = mesh.face(h.mate());
+            let goes_on = !beyond.is_boundary()
+                && (faces.len() == mesh.face_bound() || faces.binary_search(&beyond).is_ok())
+                && has_limit(mesh, beyond);
+            self.surface.closed &= goes_on;
+            if goes_on && !is_infinite(mesh.edge_sharpness(h)) {
+                continue;
             }
-            domain = domain.inner();
+            if count == 1 {
+                places[0].rims |= 1 << i;
+            } else {
+                places[i].rims |= 1;
+                places[(i + 1) % count].rims |= 1 << 3;
+            }
         }
-        self.corners.push(CornerEntry { corner, domain, limit, normal });
-        Entry::Corner { first_piece, corner: self.corners.len() as u32 - 1 }
     }
 
-    /// Builds the tree over everything that was added.
-    fn finish(&mut self) {
-        let pieces = self.pieces.iter().map(|piece| piece.bicubic.bounds());
-        let corners = self.corners.iter().map(|entry| entry.corner.bounds());
-        let boxes: Vec<(DVec3, DVec3)> = pieces.chain(corners).collect();
-        self.tree = Tree::new(&boxes);
-        if let Some((low, high)) = self.tree.bounds() {
-            self.size = low.distance(high);
+    fn finish(self) -> LimitSurface {
+        let Self { mut surface, low, high, .. } = self;
+        if low.x <= high.x {
+            surface.size = low.distance(high);
             let farthest = low.abs().max(high.abs()).max_element();
-            self.tolerance = 1e-13 * self.size + 8.0 * f64::EPSILON * farthest;
+            surface.tolerance = 1e-13 * surface.size + 8.0 * f64::EPSILON * farthest;
         }
+        surface.closed &= !surface.patches.is_empty();
+        surface.faces.close(surface.patches.len() as u32);
+        surface
     }
 }

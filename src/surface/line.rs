@@ -1,6 +1,6 @@
 //! Where a line meets the surface.
 
-use super::freeze::{CornerEntry, Domain};
+use super::index::{Domain, Item, Rest};
 use super::line_piece::{Crossing, crossings};
 use super::tree::{Content, Node};
 use super::{Bicubic, LimitSurface};
@@ -52,10 +52,15 @@ struct Search<'a> {
     frame: DMat3,
     /// Signed distance of `base` from the origin of the line.
     base_along: f64,
-    /// Only |along| up to this counts.
+    /// Only signed distances from the origin in this interval count, whose bounds may be infinite.
+    first: f64,
+    last: f64,
+    /// Of those, only such up to this amount.
     reach: f64,
-    /// Only the nearest hit with a normal on the side of this direction is wanted.
-    nearest: Option<DVec3>,
+    /// Only the hit nearest to the origin is wanted.
+    nearest: bool,
+    /// Only hits with a normal on the side of this direction are wanted.
+    compatible: Option<DVec3>,
     found: Vec<Found>,
     crossings: Vec<Crossing>,
     parts: u32,
@@ -66,7 +71,17 @@ impl LimitSurface {
     /// vertex, is given once. A tangent line gives its point of contact, a line that lies in the surface some of its
     /// points. Empty for a direction that is zero and for numbers that are not finite.
     pub fn line_hits(&self, origin: DVec3, direction: DVec3) -> Vec<Hit> {
-        self.search_line(origin, direction, f64::INFINITY, None)
+        self.line_hits_between(origin, direction, f64::NEG_INFINITY, f64::INFINITY)
+    }
+
+    /// The hits with `first` <= s <= `last`, as [`line_hits`](Self::line_hits) gives them; none where a bound is NaN.
+    pub fn line_hits_between(&self, origin: DVec3, direction: DVec3, first: f64, last: f64) -> Vec<Hit> {
+        self.search_line(origin, direction, [first, last], false, None)
+    }
+
+    /// Of the hits with `first` <= s <= `last` the one with the smallest |s|: what a ray sees where `first` is 0.
+    pub fn first_line_hit(&self, origin: DVec3, direction: DVec3, first: f64, last: f64) -> Option<Hit> {
+        nearest(self.search_line(origin, direction, [first, last], true, None))
     }
 
     /// The hit with the smallest |s|, at most `max_abs_s`, whose normal m has m . `compatible_normal` > 0.
@@ -77,21 +92,29 @@ impl LimitSurface {
         max_abs_s: f64,
         compatible_normal: DVec3,
     ) -> Option<Hit> {
-        let hits = self.search_line(origin, direction, max_abs_s, Some(compatible_normal));
-        hits.into_iter().min_by(|a, b| a.s.abs().total_cmp(&b.s.abs()))
+        let range = [-max_abs_s, max_abs_s];
+        nearest(self.search_line(origin, direction, range, true, Some(compatible_normal)))
     }
 
-    fn search_line(&self, origin: DVec3, direction: DVec3, max_s: f64, nearest: Option<DVec3>) -> Vec<Hit> {
-        let Some((low, high)) = self.tree.bounds() else {
+    fn search_line(
+        &self,
+        origin: DVec3,
+        direction: DVec3,
+        range: [f64; 2],
+        nearest: bool,
+        compatible: Option<DVec3>,
+    ) -> Vec<Hit> {
+        let Some((low, high)) = self.index().tree.bounds() else {
             return Vec::new();
         };
         let length = direction.length();
         let Some(unit) = direction.try_normalize().filter(|_| length.is_finite()) else {
             return Vec::new();
         };
-        if !origin.is_finite() || max_s.is_nan() {
+        if !origin.is_finite() || range.iter().any(|s| s.is_nan()) {
             return Vec::new();
         }
+        let [first, last] = range.map(|s| s * length);
         let base_along = ((low + high) * 0.5 - origin).dot(unit);
         let (across, other) = unit.any_orthonormal_pair();
         let mut search = Search {
@@ -99,8 +122,11 @@ impl LimitSurface {
             base: origin + unit * base_along,
             frame: DMat3::from_cols(across, other, unit).transpose(),
             base_along,
-            reach: max_s * length,
+            first,
+            last,
+            reach: f64::INFINITY,
             nearest,
+            compatible,
             found: Vec::new(),
             crossings: Vec::new(),
             parts: 0,
@@ -108,6 +134,10 @@ impl LimitSurface {
         search.run(unit);
         search.into_hits(length)
     }
+}
+
+fn nearest(hits: Vec<Hit>) -> Option<Hit> {
+    hits.into_iter().min_by(|a, b| a.s.abs().total_cmp(&b.s.abs()))
 }
 
 /// The interval of distances along the line from `base` in which it is inside the box, or `None`.
@@ -130,26 +160,37 @@ fn box_interval(node: &Node, base: DVec3, unit: DVec3, tolerance: f64) -> Option
 }
 
 impl Search<'_> {
-    /// The smallest |along| in an interval of distances from `base`.
+    /// The smallest amount that counts in an interval of distances from `base`, or infinity.
     fn nearness(&self, (enter, leave): (f64, f64)) -> f64 {
-        let (a, b) = (enter + self.base_along, leave + self.base_along);
-        if a <= 0.0 && b >= 0.0 { 0.0 } else { a.abs().min(b.abs()) }
+        let (a, b) = ((enter + self.base_along).max(self.first), (leave + self.base_along).min(self.last));
+        if a > b {
+            f64::INFINITY
+        } else if a <= 0.0 && b >= 0.0 {
+            0.0
+        } else {
+            a.abs().min(b.abs())
+        }
+    }
+
+    fn is_beyond(&self, nearness: f64) -> bool {
+        nearness > self.reach || nearness == f64::INFINITY
     }
 
     fn run(&mut self, unit: DVec3) {
         let surface = self.surface;
+        let content = surface.index();
         let slack = 2.0 * surface.tolerance;
         let mut open: SmallVec<[(f64, u32); 64]> = SmallVec::new();
         open.push((0.0, 0));
         while let Some((nearness, index)) = open.pop() {
-            if nearness > self.reach {
+            if self.is_beyond(nearness) {
                 continue;
             }
-            match surface.tree.content(index) {
+            match content.tree.content(index) {
                 Content::Children(children) => {
                     let mut inside: SmallVec<[(f64, u32); 2]> = SmallVec::new();
                     for child in children {
-                        let node = surface.tree.node(child);
+                        let node = content.tree.node(child);
                         if let Some(interval) = box_interval(node, self.base, unit, slack) {
                             inside.push((self.nearness(interval), child));
                         }
@@ -159,9 +200,9 @@ impl Search<'_> {
                 }
                 Content::Leaf(items) => {
                     for &item in items {
-                        match surface.pieces.get(item as usize) {
-                            Some(piece) => self.visit(&piece.bicubic, DVec3::ZERO, &piece.domain),
-                            None => self.visit_corner(&surface.corners[item as usize - surface.pieces.len()]),
+                        match content.item(surface, item) {
+                            Item::Piece(bicubic, domain) => self.visit(bicubic, DVec3::ZERO, domain),
+                            Item::Rest(rest) => self.visit_rest(rest),
                         }
                     }
                 }
@@ -176,7 +217,7 @@ impl Search<'_> {
             && low.y <= tolerance
             && high.x >= -tolerance
             && high.y >= -tolerance
-            && self.nearness((low.z, high.z)) <= self.reach
+            && !self.is_beyond(self.nearness((low.z, high.z)))
     }
 
     /// Looks at a patch whose points are relative to `origin`.
@@ -199,13 +240,12 @@ impl Search<'_> {
         let along = crossing.position.z + self.base_along;
         let back = self.frame.transpose();
         let normal = back * crossing.normal;
-        if along.is_nan() || along.abs() > self.reach {
+        let counts = along >= self.first && along <= self.last && along.abs() <= self.reach;
+        let compatible = self.compatible.is_none_or(|direction| normal.dot(direction) > 0.0);
+        if !counts || !compatible {
             return;
         }
-        if let Some(compatible) = self.nearest {
-            if normal.dot(compatible) <= 0.0 || normal.dot(compatible).is_nan() {
-                return;
-            }
+        if self.nearest {
             self.reach = along.abs();
         }
         let position = back * crossing.position + self.base;
@@ -213,9 +253,9 @@ impl Search<'_> {
     }
 
     /// Looks at what lies beside an extraordinary vertex, level by level.
-    fn visit_corner(&mut self, entry: &CornerEntry) {
+    fn visit_rest(&mut self, entry: &Rest) {
         let tolerance = self.surface.tolerance;
-        let mut corner = entry.corner.clone();
+        let mut corner = entry.corner(self.surface);
         let mut domain = entry.domain;
         let position = self.frame * (corner.origin - self.base);
         let hit = position.truncate().length() <= tolerance;

@@ -1,50 +1,86 @@
 //! A frozen limit surface: evaluation, line hits, closest points, deviation.
 //!
-//! [`LimitSurface`] takes what it needs from the mesh and does not change when the mesh does. Every face is held as
-//! bicubic pieces; beside an extraordinary vertex some levels of pieces are stored and deeper ones are made when a
-//! query gets there, so results are those of the true limit surface everywhere. Parameters (face, corner, u, v) are
-//! those of [`evaluate`](crate::subdivision::evaluate).
+//! [`LimitSurface`] takes what it needs from the mesh and does not change when the mesh does. Regular faces are held as
+//! bicubics (384 bytes each). A quad with an extraordinary corner is held as its control points, of which those round the
+//! corner are held once for all quads there: memory at a vertex of valence n grows with n. They are evaluated by tables per
+//! valence, up to 16, of the first six refinements, and refined level by level below and for other corners: exact
+//! everywhere. What queries search (four levels of bicubics beside extraordinary vertices, and a tree) is made at the
+//! first query. Parameters (face, corner, u, v) are those of [`evaluate`](crate::subdivision::evaluate).
+//!
+//! Degenerate queries have defined results. A point or line with a coordinate that is not finite, and a direction that is zero,
+//! find nothing. Of equally close points one is found. A line through a vertex or along an edge hits it once per crossing; a
+//! tangent line hits where it comes within the rounding of the surface; a line inside the surface gives some of the
+//! points they share.
 
+mod batch;
 mod closest;
 mod convexity;
 mod deviation;
+mod fans;
 mod freeze;
+mod index;
+mod kernel;
 mod line;
 mod line_piece;
 mod minimise;
 mod near;
+mod places;
+mod quality;
 mod tree;
+mod valence;
 
+pub use batch::Parameter;
 pub use closest::{ClosestOptions, Facing, Foot};
 pub use deviation::{Comparison, Deviation, DeviationSample, SAMPLES, Sampling, compare, deviation_samples};
+pub use kernel::Derivatives;
 pub use line::Hit;
+pub use quality::{ExtraordinaryVertex, FaceQuality, Quality};
 
+use crate::job::{Cancelled, Job};
 use crate::mesh::{FaceId, Mesh};
 use crate::subdivision::SurfacePoint;
-use crate::subdivision::patch::{Evaluated, Patch, evaluate_corner, to_quarter};
+use crate::subdivision::patch::{Evaluated, Patch};
 use crate::subdivision::patch_bicubic::{Bicubic, Jet};
 use crate::subdivision::patch_corner::Corner;
-use freeze::{CornerEntry, Entry, LEVELS, PatchPlace, Piece};
+use fans::Corners;
 use glam::DVec3;
-use smallvec::SmallVec;
-use tree::Tree;
+use index::Index;
+use kernel::Plain;
+use places::{Entry, FaceTable, Located, PatchPlace};
+use std::convert::Infallible;
+use std::sync::OnceLock;
 
 /// The limit surface of a mesh or of some of its faces, frozen. See the [module](self).
 #[derive(Clone, Debug)]
 pub struct LimitSurface {
-    /// Frozen faces, ascending, each with its first patch.
-    faces: Vec<(FaceId, u32)>,
+    faces: FaceTable,
     places: Vec<PatchPlace>,
     patches: Vec<Entry>,
     /// Quarters of patches and of each other, four by four.
     parts: Vec<Entry>,
-    pieces: Vec<Piece>,
-    corners: Vec<CornerEntry>,
-    tree: Tree,
-    /// Diagonal of the bounding box of the pieces' control points.
+    bicubics: Vec<Bicubic>,
+    corners: Corners,
+    index: OnceLock<Index>,
+    /// Every edge of the frozen faces lies between two of them.
+    closed: bool,
+    /// Diagonal of the bounding box of the control points of the patches.
     size: f64,
     /// Distances below this are rounding.
     tolerance: f64,
+}
+
+/// Progress of work that nobody watches.
+fn unwatched(_: f64) -> Result<(), Infallible> {
+    Ok(())
+}
+
+/// The real ones of `faces`, ascending, each once.
+fn existing(mesh: &Mesh, faces: &[FaceId]) -> Vec<FaceId> {
+    let mut faces: Vec<FaceId> =
+        faces.iter().copied().filter(|&f| !f.is_boundary() && mesh.has_face(f)).collect();
+    faces.sort_unstable();
+    faces.dedup();
+    faces
 }
 
 impl LimitSurface {
@@ -52,32 +88,34 @@ impl LimitSurface {
     /// limit surface are left out.
     pub fn new(mesh: &Mesh) -> Self {
         let faces: Vec<FaceId> = mesh.faces().collect();
-        freeze::freeze(mesh, faces)
+        let Ok(frozen) = freeze::freeze(mesh, &faces, unwatched);
+        frozen
     }
 
     /// Freezes the surface of `faces` only; boundary loops and faces that do not exist or have no limit surface are
     /// passed over. Time and
     /// memory follow the number of these faces and their neighbours, not the mesh.
     pub fn around(mesh: &Mesh, faces: &[FaceId]) -> Self {
-        let mut faces: Vec<FaceId> =
-            faces.iter().copied().filter(|&f| !f.is_boundary() && mesh.has_face(f)).collect();
-        faces.sort_unstable();
-        faces.dedup();
-        freeze::freeze(mesh, faces)
+        let Ok(frozen) = freeze::freeze(mesh, &existing(mesh, faces), unwatched);
+        frozen
+    }
+
+    /// [`around`](Self::around) under the eyes of a job.
+    ///
+    /// # Errors
+    /// [`Cancelled`].
+    pub fn around_with(mesh: &Mesh, faces: &[FaceId], job: &Job) -> Result<Self, Cancelled> {
+        freeze::freeze(mesh, &existing(mesh, faces), |done| job.step("freeze", done))
     }
 
     /// Frozen faces, ascending.
-    pub fn faces(&self) -> impl ExactSizeIterator<Item = FaceId> {
-        self.faces.iter().map(|entry| entry.0)
+    pub fn faces(&self) -> impl Iterator<Item = FaceId> {
+        self.places.iter().filter(|place| place.corner == 0).map(|place| place.face)
     }
 
     /// Number of patches of `face`: 1 for a quad, one per corner for another face, 0 for a face that is not frozen.
     pub fn patch_count(&self, face: FaceId) -> usize {
-        let Ok(index) = self.faces.binary_search_by_key(&face, |entry| entry.0) else {
-            return 0;
-        };
-        let end = self.faces.get(index + 1).map_or(self.patches.len(), |entry| entry.1 as usize);
-        end - self.faces[index].1 as usize
+        self.faces.patches(face).len()
     }
 
     /// Diagonal of a box round the surface: the size that tolerances refer to. 0 when nothing is frozen.
@@ -85,76 +123,99 @@ impl LimitSurface {
         self.size
     }
 
+    /// True when the surface has no border: every edge of the frozen faces lies between two of them.
+    pub fn is_closed(&self) -> bool {
+        self.closed
+    }
+
     /// The surface at (u, v) of patch `corner` of `face`; parameters outside [0, 1] are moved to the nearest inside.
     /// `None` where no such patch is frozen and for NaN.
     pub fn evaluate(&self, face: FaceId, corner: usize, u: f64, v: f64) -> Option<SurfacePoint> {
-        if u.is_nan() || v.is_nan() || corner >= self.patch_count(face) {
+        if u.is_nan() || v.is_nan() {
             return None;
         }
-        let index = self.faces.binary_search_by_key(&face, |entry| entry.0).ok()?;
-        let patch = self.faces[index].1 as usize + corner;
+        let patch = self.patch_index(face, corner)?;
         Some(self.evaluate_patch(patch, u.clamp(0.0, 1.0), v.clamp(0.0, 1.0)))
     }
 
+    fn patch_index(&self, face: FaceId, corner: usize) -> Option<usize> {
+        self.faces.patches(face).nth(corner).map(|patch| patch as usize)
+    }
+
     fn evaluate_patch(&self, patch: usize, u: f64, v: f64) -> SurfacePoint {
-        let (mut entry, mut x, mut y) = (self.patches[patch], u, v);
-        let mut quarters: SmallVec<[usize; 12]> = SmallVec::new();
-        while let Entry::Split(first) = entry {
-            let quarter;
-            (quarter, x, y) = to_quarter(x, y);
-            quarters.push(quarter);
-            entry = self.parts[first as usize + quarter];
-        }
-        let mut found = match entry {
-            Entry::Corner { first_piece, corner } => self.evaluate_corner(first_piece, corner, x, y),
-            Entry::Regular(piece) | Entry::Split(piece) => {
-                Evaluated::regular(self.pieces[piece as usize].bicubic.jet(x, y))
-            }
+        self.evaluate_located(&Located::new(self.patches[patch], &self.parts, u, v))
+    }
+
+    fn evaluate_located(&self, located: &Located) -> SurfacePoint {
+        let mut found = match located.entry {
+            Entry::Corner { corner, .. } => self.evaluate_corner(corner, located.u, located.v),
+            Entry::Regular(piece) | Entry::Split(piece) => Evaluated::regular(kernel::jet::<2, Plain>(
+                Plain,
+                &self.bicubics[piece as usize],
+                located.u,
+                located.v,
+            )),
         };
-        for &quarter in quarters.iter().rev() {
-            found.jet = found.jet.in_patch(quarter);
-        }
+        found.jet = located.in_patch(found.jet);
         found.into()
     }
 
-    fn evaluate_corner(&self, first_piece: u32, corner: u32, mut x: f64, mut y: f64) -> Evaluated {
-        let mut scale = 1.0;
-        for level in 0..LEVELS {
-            (x, y, scale) = (2.0 * x, 2.0 * y, 2.0 * scale);
-            let (side, a, b) = match (x >= 1.0, y >= 1.0) {
-                (false, false) => continue,
-                (true, false) => (0, x - 1.0, y),
-                (true, true) => (1, x - 1.0, y - 1.0),
-                (false, true) => (2, x, y - 1.0),
-            };
-            let piece = &self.pieces[(first_piece + 3 * level + side) as usize];
-            return Evaluated::regular(piece.bicubic.jet(a, b).scaled(scale));
+    fn evaluate_corner(&self, corner: u32, u: f64, v: f64) -> Evaluated {
+        match self.corners.jet::<2, Plain>(Plain, corner, u, v) {
+            Some(jet) => Evaluated::regular(jet),
+            None => self.corners.evaluate(corner, u, v),
         }
-        let entry = &self.corners[corner as usize];
-        let mut found = evaluate_corner(&entry.corner, x, y);
-        if found.smooth {
-            found.jet = found.jet.scaled(scale);
-        } else {
-            found.jet = Jet { du: entry.limit.du, dv: entry.limit.dv, ..found.jet };
-            found.normal = entry.normal;
-        }
-        found
     }
 
-    /// The distance of `point` to the surface, positive on the side of its normals.
-    ///
-    /// That to the closest point, unless its normal is opposite to `normal`: then a foot whose normal has an angle
-    /// below 90 degrees counts, so that a thin wall does not snap to its other side, if there is one at most ten times
-    /// as far away (else the point belongs to a small fold). `None` when the surface is empty or a coordinate is not
-    /// finite.
+    /// What queries search.
+    fn index(&self) -> &Index {
+        self.index.get_or_init(|| Index::new(self))
+    }
+
+    /// The distance of `point` to the surface, positive on the side of its normals: that to its
+    /// [`compatible_foot`](Self::compatible_foot). `None` when the surface is empty or a coordinate is not finite.
     pub fn signed_distance(&self, point: DVec3, normal: DVec3) -> Option<f64> {
-        const FARTHER: f64 = 10.0;
-        let mut foot = self.closest(point, &ClosestOptions::default())?;
-        if foot.normal.dot(normal) <= 0.0 {
-            let facing = Some(Facing { normal, min_cosine: 0.0 });
-            let radius = FARTHER * foot.distance;
-            foot = self.closest(point, &ClosestOptions { radius, facing }).unwrap_or(foot);
-        }
+        let foot = self.compatible_foot(point, normal)?;
         Some(foot.distance.copysign((point - foot.position).dot(foot.normal)))
+    }
+
+    /// The distance of `point` to a closed surface, negative inside. `None` where the surface has a border and where
+    /// [`closest`](Self::closest) gives none.
+    ///
+    /// Where the closest point lies on a crease, so that its normal does not tell the side, a line from the point to
+    /// the middle of a patch beside it does: the side is that of the first crossing.
+    pub fn solid_distance(&self, point: DVec3) -> Option<f64> {
+        if !self.closed {
+            return None;
+        }
+        let foot = self.closest(point, &ClosestOptions::default())?;
+        let height = (point - foot.position).dot(foot.normal);
+        if height.abs() >= (1.0 - 1e-9) * foot.distance || foot.distance <= self.tolerance {
+            return Some(foot.distance.copysign(height));
+        }
+        let side = [(0.5, 0.5), (0.3, 0.6), (0.7, 0.2), (0.2, 0.9), (0.9, 0.4)].iter().find_map(|&(u, v)| {
+            let target = self.evaluate(foot.face, foot.corner, u, v)?.position;
+            let way = target - point;
+            let hit = self.first_line_hit(point, way, 0.0, f64::INFINITY)?;
+            let slope = hit.normal.dot(way);
+            (slope.abs() > 0.01 * way.length()).then_some(-slope)
+        });
+        Some(foot.distance.copysign(side.unwrap_or(height)))
+    }
+
+    /// The point of the surface that belongs to `point`, which lies on another surface with `normal`.
+    ///
+    /// The closest point, unless its normal is opposite to `normal`: then a foot whose normal has an angle below 90
+    /// degrees counts, so that a thin wall does not snap to its other side, if there is one at most ten times as far
+    /// away (else the point belongs to a small fold). `None` when the surface is empty or a coordinate is not finite.
+    pub fn compatible_foot(&self, point: DVec3, normal: DVec3) -> Option<Foot> {
+        const FARTHER: f64 = 10.0;
+        let foot = self.closest(point, &ClosestOptions::default())?;
+        if foot.normal.dot(normal) > 0.0 {
+            return Some(foot);
+        }
+        let facing = Some(Facing { normal, min_cosine: 0.0 });
+        let radius = FARTHER * foot.distance;
+        Some(self.closest(point, &ClosestOptions { radius, facing }).unwrap_or(foot))
     }
 }

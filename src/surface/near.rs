@@ -4,6 +4,7 @@
 //! only when the result lies in the patch of the start; callers search otherwise.
 
 use super::{Foot, Hit, LimitSurface};
+use crate::mesh::FaceId;
 use glam::{DMat2, DMat3, DVec2, DVec3};
 
 /// Newton converges quadratically from a near start; more steps mean that the start was not near.
@@ -14,7 +15,7 @@ const CONVERGED: f64 = 1e-14;
 impl LimitSurface {
     /// The hit of a line, found from a hit of a nearby line. `None` when there is none in the same patch.
     pub fn line_hit_near(&self, start: &Hit, origin: DVec3, direction: DVec3) -> Option<Hit> {
-        let patch = self.patch_index(start)?;
+        let patch = self.patch_index(start.face, start.corner)?;
         let (mut u, mut v, mut s) = (start.u, start.v, start.s);
         for _ in 0..STEPS {
             let point = self.evaluate_patch(patch, u, v);
@@ -34,11 +35,11 @@ impl LimitSurface {
         None
     }
 
-    /// The foot of the perpendicular from `point`, found from a hit near it. `None` when there is none in the same
-    /// patch.
-    pub fn foot_near(&self, start: &Hit, point: DVec3) -> Option<Foot> {
-        let patch = self.patch_index(start)?;
-        let (mut u, mut v) = (start.u, start.v);
+    /// The foot of the perpendicular from `point`, found from (u, v) of a patch near it. `None` when there is none in the
+    /// same patch.
+    pub fn foot_near(&self, face: FaceId, corner: usize, u: f64, v: f64, point: DVec3) -> Option<Foot> {
+        let patch = self.patch_index(face, corner)?;
+        let (mut u, mut v) = (u, v);
         for _ in 0..STEPS {
             let here = self.evaluate_patch(patch, u, v);
             let second = here.second?;
@@ -61,8 +62,8 @@ impl LimitSurface {
             if step.abs().max_element() < CONVERGED {
                 let here = self.evaluate_patch(patch, u, v);
                 return Some(Foot {
-                    face: start.face,
-                    corner: start.corner,
+                    face,
+                    corner,
                     u,
                     v,
                     position: here.position,
@@ -72,11 +73,6 @@ impl LimitSurface {
             }
         }
         None
-    }
-
-    fn patch_index(&self, place: &Hit) -> Option<usize> {
-        let index = self.faces.binary_search_by_key(&place.face, |entry| entry.0).ok()?;
-        (place.corner < self.patch_count(place.face)).then(|| self.faces[index].1 as usize + place.corner)
     }
 }
 

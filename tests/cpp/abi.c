@@ -63,9 +63,72 @@ static void limit_and_refinement(void) {
     welt_report_free(report);
 }
 
+static void errors_are_written(void) {
+    welt_mesh *mesh = NULL;
+    /* Not an error: whatever stands there is overwritten, not freed. */
+    welt_error *error = (welt_error *)pyramid;
+    const uint8_t *text = (const uint8_t *)pyramid;
+    const size_t size = strlen(pyramid);
+    check(welt_mesh_import_memory(NULL, 0, WELT_FORMAT_OBJ, text, size, NULL, &mesh, NULL, &error) == WELT_OK, "import");
+    check(error == NULL, "success writes NULL");
+    check(welt_mesh_set_holes(mesh, NULL, 1, &error) == WELT_ERROR_ARGUMENT && error != NULL, "a failure an error");
+    check(welt_error_code(error) == WELT_ERROR_ARGUMENT, "with its code");
+    check(welt_mesh_set_holes(mesh, NULL, 1, NULL) == WELT_ERROR_ARGUMENT, "which may be unwanted");
+    welt_error_free(error);
+    welt_mesh_free(mesh);
+}
+
+static void arrays_are_copied(void) {
+    uint32_t sizes[1] = {3}, corners[3] = {0, 1, 2}, got[3] = {9, 9, 9};
+    double positions[9] = {0, 0, 0, 1, 0, 0, 0, 1, 0};
+    char selectors[] = "edge:0,1";
+    const double *view = NULL;
+    welt_mesh *mesh = NULL;
+    welt_selection *selection = NULL;
+    check(welt_mesh_create(sizes, 1, corners, 3, positions, 3, 0, &mesh, NULL) == WELT_OK, "create");
+    check(welt_selection_create(mesh, selectors, (size_t)-1, &selection, NULL) == WELT_OK, "selection");
+    memset(sizes, 0xff, sizeof sizes);
+    memset(corners, 0xff, sizeof corners);
+    memset(positions, 0xff, sizeof positions);
+    memset(selectors, 0xff, sizeof selectors);
+    check(welt_mesh_positions(mesh, &view, NULL) == WELT_OK && view[3] == 1.0 && view[7] == 1.0, "positions");
+    check(welt_mesh_faces(mesh, sizes, 1, got, 3, NULL) == WELT_OK && got[0] == 0 && got[2] == 2, "faces");
+    check(welt_selection_edges(selection, mesh, got, 2, NULL, 0, NULL) == WELT_OK && got[0] + got[1] == 1, "marks");
+    welt_selection_free(selection);
+    welt_mesh_free(mesh);
+}
+
+static void results_outlive_the_mesh(void) {
+    welt_mesh *mesh = NULL;
+    welt_surface *surface = NULL;
+    welt_refinement *refinement = NULL;
+    const uint32_t base = 0;
+    const double middle[2] = {0.5, 0.5}, *view = NULL;
+    double flat[15], before[18], after[18], first;
+    memset(flat, 0, sizeof flat);
+    check(welt_mesh_import_memory(NULL, 0, WELT_FORMAT_OBJ, (const uint8_t *)pyramid, strlen(pyramid), NULL, &mesh, NULL,
+                                  NULL) == WELT_OK,
+          "import");
+    check(welt_surface_create(mesh, NULL, 0, NULL, &surface, NULL) == WELT_OK, "surface");
+    check(welt_refinement_create(mesh, 1, NULL, &refinement, NULL) == WELT_OK, "refinement");
+    check(welt_surface_evaluate(surface, &base, NULL, middle, 1, before, 18, NULL) == WELT_OK, "evaluate");
+    check(welt_refinement_positions(refinement, 1, &view, NULL) == WELT_OK, "view");
+    first = view[0];
+    check(welt_mesh_set_positions(mesh, flat, 5, 0, NULL) == WELT_OK, "the mesh changes");
+    check(view[0] == first, "the refinement does not");
+    welt_mesh_free(mesh);
+    check(welt_surface_evaluate(surface, &base, NULL, middle, 1, after, 18, NULL) == WELT_OK, "evaluate");
+    check(memcmp(before, after, sizeof before) == 0 && view[0] == first, "they outlive it");
+    welt_surface_free(surface);
+    welt_refinement_free(refinement);
+}
+
 int main(void) {
     check(welt_version() == WELT_VERSION, "header and library are of one version");
     errors_tell_where();
+    errors_are_written();
+    arrays_are_copied();
+    results_outlive_the_mesh();
     limit_and_refinement();
     printf("%d failures\n", failures);
     return failures != 0;

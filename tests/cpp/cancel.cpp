@@ -1,7 +1,7 @@
 // A feature that another thread cancels at some moment is applied whole or not at all, and several threads may read one mesh.
 
 #include "check.hpp"
-#include "welt.hpp"
+#include "library.hpp"
 
 #include <atomic>
 #include <chrono>
@@ -108,7 +108,7 @@ void many_readers() {
             welt_selection* selection = nullptr;
             welt_surface* surface = nullptr;
             bool fine = welt_selection_create(mesh.get(), "ring:20,21", SIZE_MAX, &selection, nullptr) == WELT_OK;
-            fine = welt_surface_create(mesh.get(), nullptr, 0, &surface, nullptr) == WELT_OK && fine;
+            fine = welt_surface_create(mesh.get(), nullptr, 0, nullptr, &surface, nullptr) == WELT_OK && fine;
             wrong += !fine || welt_selection_count(selection) != side + 1;
             welt_surface_free(surface);
             welt_selection_free(selection);
@@ -117,10 +117,26 @@ void many_readers() {
     check::that(wrong == 0, "four threads read one mesh");
 }
 
+void different_handles_at_once() {
+    auto const work = [] {
+        Mesh mesh = make_mesh(sheet());
+        welt::Selection const marks = mesh.select("ring:20,21");
+        check::that(groove(mesh.get(), marks.get(), nullptr) == WELT_OK, "a feature beside others");
+        return content(mesh.get());
+    };
+    Content const alone = work();
+    std::atomic<int> different{0};
+    std::vector<std::thread> workers;
+    for (int i = 0; i < 4; ++i) workers.emplace_back([&] { different += !(work() == alone); });
+    for (std::thread& worker : workers) worker.join();
+    check::that(different == 0, "four threads change a mesh each");
+}
+
 }  // namespace
 
 int main() {
     cancelled_at_any_moment();
+    different_handles_at_once();
     many_readers();
     return check::result();
 }

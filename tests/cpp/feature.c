@@ -96,7 +96,7 @@ static void null_pointers(void) {
     const int32_t bad = WELT_ERROR_ARGUMENT;
 
     check(welt_rules_linear(&rules, NULL) == WELT_OK, "linear rules");
-    check(welt_surface_create(mesh, NULL, 0, &surface, NULL) == WELT_OK, "surface");
+    check(welt_surface_create(mesh, NULL, 0, NULL, &surface, NULL) == WELT_OK, "surface");
 
     check(welt_selection_create(NULL, "ring:3,4", NUL, &no_selection, NULL) == bad, "selection: mesh");
     check(welt_selection_create(mesh, NULL, NUL, &no_selection, NULL) == bad, "selection: text");
@@ -152,13 +152,13 @@ static void null_pointers(void) {
     check(welt_mesh_deviation(mesh, mesh, 0, values, NULL, NULL) == bad, "deviation: 0 samples");
     check(welt_mesh_deviation(mesh, mesh, 65, values, NULL, NULL) == bad, "deviation: 65 samples");
 
-    check(welt_surface_create(NULL, NULL, 0, &no_surface, NULL) == bad, "surface: mesh");
-    check(welt_surface_create(mesh, NULL, 0, NULL, NULL) == bad, "surface: handle");
-    check(welt_surface_create(mesh, &vertex, NUL, &no_surface, NULL) == bad, "surface: count");
+    check(welt_surface_create(NULL, NULL, 0, NULL, &no_surface, NULL) == bad, "surface: mesh");
+    check(welt_surface_create(mesh, NULL, 0, NULL, NULL, NULL) == bad, "surface: handle");
+    check(welt_surface_create(mesh, &vertex, NUL, NULL, &no_surface, NULL) == bad, "surface: count");
     vertex = FACES;
-    check(welt_surface_create(mesh, &vertex, 1, &no_surface, NULL) == bad, "surface: face");
+    check(welt_surface_create(mesh, &vertex, 1, NULL, &no_surface, NULL) == bad, "surface: face");
     vertex = WELT_NONE;
-    check(welt_surface_create(mesh, &vertex, 1, &no_surface, NULL) == bad, "surface: face WELT_NONE");
+    check(welt_surface_create(mesh, &vertex, 1, NULL, &no_surface, NULL) == bad, "surface: face WELT_NONE");
     check(welt_mesh_fit(NULL, NULL, 0, surface, WELT_FIT_SOLVE, NULL, NULL, NULL) == bad, "fit: mesh");
     check(welt_mesh_fit(mesh, NULL, 0, NULL, WELT_FIT_SOLVE, NULL, NULL, NULL) == bad, "fit: surface");
     check(welt_mesh_fit(mesh, NULL, 0, surface, 77, NULL, NULL, NULL) == bad, "fit: method");
@@ -215,7 +215,7 @@ static void mistakes(void) {
     status = groove(mesh, selection, "width=nan", NULL, NULL, &error);
     refused(status, WELT_ERROR_ARGUMENT, error, "width", mesh);
     status = groove(mesh, selection, "width=-0.2", NULL, NULL, &error);
-    refused(status, WELT_ERROR_ARGUMENT, error, "greater than 0", mesh);
+    refused(status, WELT_ERROR_ARGUMENT, error, "than 0", mesh);
     status = groove(mesh, selection, "breadth=0.2", NULL, NULL, &error);
     refused(status, WELT_ERROR_ARGUMENT, error, "width, depth", mesh);
     status = groove(mesh, selection, "width=5", NULL, NULL, &error);
@@ -234,6 +234,17 @@ static void mistakes(void) {
     options.fit = 9;
     status = groove(mesh, selection, "width=0.2", &options, NULL, &error);
     refused(status, WELT_ERROR_ARGUMENT, error, "WELT_FIT_", mesh);
+    options.fit = WELT_FIT_SOLVE;
+    options.parity = 3;
+    status = groove(mesh, selection, "width=0.2", &options, NULL, &error);
+    refused(status, WELT_ERROR_ARGUMENT, error, "WELT_PARITY_", mesh);
+    options.parity = WELT_PARITY_ALL_QUAD;
+    options.strict = 1;
+    check(welt_selection_create(mesh, "edge:0,1 edge:1,10#piping", NUL, &none, NULL) == WELT_OK, "unlike marks");
+    status = groove(mesh, none, "width=0.2", &options, NULL, &error);
+    check(welt_error_place_count(error) == 2 && welt_error_place_kind(error, 0) == WELT_PLACE_EDGE, "marked edges");
+    refused(status, WELT_ERROR_RULE, error, "no rule handles", mesh);
+    welt_selection_free(none);
 
     check(welt_rules_linear(&rules, NULL) == WELT_OK, "linear rules");
     status = welt_rules_apply(mesh, selection, rules, "no_such_thing=1", NUL, NULL, NULL, NULL, &error);
@@ -339,7 +350,7 @@ static void stages(void) {
     for (i = 0; i <= SIDE; ++i)
         check(edges[2 * i] % (SIDE + 1) + edges[2 * i + 1] % (SIDE + 1) == 7 && places[i] == 0.5, "a middle edge");
     check(welt_mesh_mark(mesh, selection, NULL) == WELT_OK && is_sheet(mesh), "marks change no shape");
-    check(welt_surface_create(mesh, NULL, 0, &surface, NULL) == WELT_OK, "surface");
+    check(welt_surface_create(mesh, NULL, 0, NULL, &surface, NULL) == WELT_OK, "surface");
     check(welt_rules_linear(&rules, NULL) == WELT_OK, "rules");
     check(welt_rules_apply(mesh, selection, rules, NULL, 0, NULL, NULL, &report, NULL) == WELT_OK, "rules run");
     check(strchr(welt_report_json(report), '{') != NULL, "report");

@@ -1,5 +1,5 @@
-// The limit surface at random parameters of all faces against OpenSubdiv's Bfr, for the shapes of OpenSubdiv with and
-// without their tags.
+// The limit surface at 10,000 random parameters of each shape against OpenSubdiv's Bfr, for the shapes of OpenSubdiv with
+// and without their tags: Catmull-Clark for all, Loop for those of triangles.
 //
 // Beside an extraordinary vertex Bfr refines to a level that is asked for (10 here) and puts an approximation into the
 // last square; parameters there are left out. Holes and faces that the boundary rule leaves out have no surface in both.
@@ -12,7 +12,9 @@
 
 #include <opensubdiv/bfr/refinerSurfaceFactory.h>
 
+#include <algorithm>
 #include <random>
+#include <tuple>
 
 namespace {
 
@@ -42,10 +44,17 @@ bool breaks_bfr(Far::TopologyLevel const& level, int face) {
     return false;
 }
 
-void compare(std::string const& name, Polygons const& polygons, Mesh const& mesh) {
-    if (name.rfind("osd/", 0) != 0) return;
+// True where Bfr approximates.
+bool is_approximated(Bfr::Surface<double> const& surface, double u, double v, int arity) {
+    if (surface.IsRegular()) return false;
+    if (arity != 3) return in_last_square(u, v, arity == 4 ? 0 : 1);
+    return std::max({1 - u - v, u, v}) >= 1 - std::ldexp(1.0001, -levels);
+}
+
+void compare_scheme(std::string const& name, Polygons const& polygons, Mesh const& mesh, Sdc::SchemeType scheme) {
+    bool const loop = scheme == Sdc::SCHEME_LOOP;
     double const size = size_of(polygons.positions);
-    auto const refiner = make_refiner(polygons, 0);
+    auto const refiner = make_refiner(polygons, 0, scheme);
     Bfr::SurfaceFactory::Options options;
     options.SetApproxLevelSmooth(levels).SetApproxLevelSharp(levels);
     Bfr::RefinerSurfaceFactory<> const factory(*refiner, options);
@@ -55,7 +64,7 @@ void compare(std::string const& name, Polygons const& polygons, Mesh const& mesh
     Bfr::Surface<double> surface;
     std::vector<double> points;
     Largest largest;
-    int compared = 0, nowhere = 0, seconds = 0;
+    int compared = 0, nowhere = 0, seconds = 0, approximated = 0, broken = 0;
     int const face_count = static_cast<int>(polygons.sizes.size());
     int const per_face = points_per_shape / face_count + 1;
     for (int face = 0; face < face_count; ++face) {
@@ -63,12 +72,17 @@ void compare(std::string const& name, Polygons const& polygons, Mesh const& mesh
         std::vector<std::uint32_t> faces(per_face, face), corners(per_face, 0);
         std::vector<double> parameters;
         for (int i = 0; i < per_face; ++i) {
-            parameters.insert(parameters.end(), {parameter(random), parameter(random)});
+            double u = parameter(random), v = parameter(random);
+            if (loop && u + v > 1) std::tie(u, v) = std::make_pair(1 - u, 1 - v);
+            parameters.insert(parameters.end(), {u, v});
             corners[i] = arity == 4 ? 0 : static_cast<std::uint32_t>(i) % arity;
         }
-        auto const jets = evaluate(mesh, faces, corners, parameters);
+        auto const jets = loop ? evaluate_loop(mesh, faces, parameters) : evaluate(mesh, faces, corners, parameters);
         std::string const where = name + " face " + std::to_string(face);
-        if (breaks_bfr(refiner->GetLevel(0), face)) continue;
+        if (breaks_bfr(refiner->GetLevel(0), face)) {
+            broken += per_face;
+            continue;
+        }
         if (!factory.InitVertexSurface(face, &surface)) {
             for (auto const& jet : jets) check::that(std::isnan(jet.position.x), where + " has a surface");
             ++nowhere;
@@ -79,9 +93,12 @@ void compare(std::string const& name, Polygons const& polygons, Mesh const& mesh
         surface.PreparePatchPoints(&polygons.positions.data()->x, three, points.data(), three);
         for (int i = 0; i < per_face; ++i) {
             double uv[2] = {parameters[2 * i], parameters[2 * i + 1]};
-            if (!surface.IsRegular() && in_last_square(uv[0], uv[1], arity == 4 ? 0 : 1)) continue;
+            if (is_approximated(surface, uv[0], uv[1], loop ? 3 : arity == 4 ? 4 : 5)) {
+                ++approximated;
+                continue;
+            }
             double scale = 1;
-            if (arity != 4) {
+            if (!loop && arity != 4) {
                 double const normalized[2] = {uv[0], uv[1]};
                 surface.GetParameterization().ConvertNormalizedSubFaceToCoord(static_cast<int>(corners[i]), normalized, uv);
                 scale = 0.5;
@@ -107,8 +124,17 @@ void compare(std::string const& name, Polygons const& polygons, Mesh const& mesh
             ++seconds;
         }
     }
-    std::printf("%-45s %6d points %.1e, tangents %.1e, %d second %.1e, %d faces without surface\n", name.c_str(), compared,
-                largest.position, largest.first, seconds, largest.second, nowhere);
+    std::printf("%-45s %s %6d points %.1e, tangents %.1e, %d second %.1e, %d faces without surface, %d points in Bfr's last "
+                "squares, %d where it breaks\n",
+                name.c_str(), loop ? "Loop" : "CC  ", compared, largest.position, largest.first, seconds, largest.second,
+                nowhere, approximated, broken);
+}
+
+void compare(std::string const& name, Polygons const& polygons, Mesh const& mesh) {
+    if (name.rfind("osd/", 0) != 0) return;
+    compare_scheme(name, polygons, mesh, Sdc::SCHEME_CATMARK);
+    bool const triangles = std::all_of(polygons.sizes.begin(), polygons.sizes.end(), [](auto size) { return size == 3; });
+    if (triangles) compare_scheme(name, polygons, mesh, Sdc::SCHEME_LOOP);
 }
 
 }  // namespace

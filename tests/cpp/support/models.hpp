@@ -2,7 +2,7 @@
 #pragma once
 
 #include "obj.hpp"
-#include "welt.hpp"
+#include "library.hpp"
 
 #include <functional>
 #include <string>

@@ -1,15 +1,43 @@
-//! The boundary of the frozen surface as curves: boundary vertices stay on them.
+//! Boundary and creases of the frozen surface as curves: their vertices stay on them.
 
-use crate::mesh::{FaceId, Mesh};
+use crate::mesh::{BoundaryRule, FaceId, HalfEdgeId, Mesh, VertexId};
+use crate::subdivision::limit_mask;
+use crate::subdivision::sharpness::is_infinite;
 use glam::DVec3;
 
-/// The limit curves of the boundary edges near a feature: uniform cubic B-splines (boundary rule edge-only).
+/// The limit curves of the sharp edges near a feature: boundary edges, unless the surface ends before them, and
+/// infinitely sharp creases. They are uniform cubic B-splines that end in corners; an edge to a dart, whose curve is no
+/// such spline, is left out.
 #[derive(Clone, Default, Debug)]
-pub struct BoundaryCurves {
+pub struct SharpCurves {
     segments: Vec<Segment>,
 }
 
-/// The curve of one boundary edge.
+/// True for an edge that bounds the surface on both sides.
+fn is_sharp(mesh: &Mesh, h: HalfEdgeId) -> bool {
+    let on_boundary = mesh.face(h).is_boundary() || mesh.face(h.mate()).is_boundary();
+    let counts = on_boundary && mesh.subdivision().boundary != BoundaryRule::None;
+    counts || is_infinite(mesh.edge_sharpness(h))
+}
+
+/// True for a vertex that stays on a sharp curve or in a corner: two or more sharp edges meet in it.
+pub(super) fn is_on_curve(mesh: &Mesh, v: VertexId) -> bool {
+    mesh.outgoing(v).filter(|&h| is_sharp(mesh, h)).nth(1).is_some()
+}
+
+/// The control point that continues a curve beyond the target of its last edge `h`.
+fn beyond(mesh: &Mesh, h: HalfEdgeId) -> Option<DVec3> {
+    let end = mesh.target(h);
+    let mut others = mesh.outgoing(end).filter(|&other| other != h.mate() && is_sharp(mesh, other));
+    let next = others.next()?;
+    if limit_mask(mesh, end).len() == 1 {
+        // A corner stays: the curve goes through it.
+        return Some(2.0 * mesh.position(end) - mesh.position(mesh.source(h)));
+    }
+    Some(mesh.position(mesh.target(next)))
+}
+
+/// The curve of one sharp edge.
 #[derive(Clone, Debug)]
 struct Segment {
     control: [DVec3; 4],
@@ -63,24 +91,22 @@ impl Segment {
 const STARTS: usize = 8;
 const NEWTON_STEPS: usize = 20;
 
-impl BoundaryCurves {
-    /// The boundary curves along `faces`.
+impl SharpCurves {
+    /// The sharp curves along `faces`.
     pub fn around(mesh: &Mesh, faces: &[FaceId]) -> Self {
-        let segments = faces
-            .iter()
-            .flat_map(|&f| mesh.face_half_edges(f))
-            .map(|h| h.mate())
-            .filter(|&h| mesh.face(h).is_boundary())
-            .map(|h| {
-                [mesh.prev(h), h, mesh.next(h), mesh.next(mesh.next(h))]
-                    .map(|h| mesh.position(mesh.source(h)))
-            })
-            .map(Segment::new)
-            .collect();
-        Self { segments }
+        let sharp = faces.iter().flat_map(|&f| mesh.face_half_edges(f)).filter(|&h| is_sharp(mesh, h));
+        // Half-edges of one edge lie in two faces: the first will do.
+        let mut edges: Vec<HalfEdgeId> = sharp.collect();
+        edges.sort_unstable();
+        edges.dedup_by_key(|h| h.edge());
+        let segments = edges.into_iter().filter_map(|h| {
+            let (first, last) = (beyond(mesh, h.mate())?, beyond(mesh, h)?);
+            Some(Segment::new([first, mesh.position(mesh.source(h)), mesh.position(mesh.target(h)), last]))
+        });
+        Self { segments: segments.collect() }
     }
 
-    /// The point of the curves closest to `point`; `None` where there is no boundary.
+    /// The point of the curves closest to `point`; `None` where there is none.
     pub fn closest(&self, point: DVec3) -> Option<DVec3> {
         // The segment with the least bound first: it is nearly always the one, and rules out the others.
         let bounds: Vec<f64> = self.segments.iter().map(|segment| segment.bound(point)).collect();
@@ -131,13 +157,13 @@ mod tests {
 
     #[test]
     fn closest_on_a_straight_boundary() {
-        let curves = BoundaryCurves {
+        let curves = SharpCurves {
             segments: vec![Segment::new([0.0, 1.0, 2.0, 3.0].map(|x| DVec3::new(x, 0.0, 0.0)))],
         };
         let foot = curves.closest(DVec3::new(1.3, 5.0, 2.0)).expect("a boundary");
         assert!((foot - DVec3::new(1.3, 0.0, 0.0)).length() < 1e-12);
         let end = curves.closest(DVec3::new(-4.0, 0.0, 0.0)).expect("a boundary");
         assert!((end - DVec3::new(1.0, 0.0, 0.0)).length() < 1e-12);
-        assert!(BoundaryCurves::default().closest(DVec3::ZERO).is_none());
+        assert!(SharpCurves::default().closest(DVec3::ZERO).is_none());
     }
 }

@@ -1,26 +1,11 @@
-// Owning handles of the C ABI, and arrays in place of pointers and counts.
+// The library under test in the terms of the tests: their polygons and vectors in, those out. All throw welt::Error.
 #pragma once
 
 #include "obj.hpp"
 
-#include <welt.h>
+#include <welt.hpp>
 
-#include <memory>
-#include <stdexcept>
-
-struct Free {
-    void operator()(welt_mesh* mesh) const { welt_mesh_free(mesh); }
-    void operator()(welt_surface* surface) const { welt_surface_free(surface); }
-    void operator()(welt_refinement* refinement) const { welt_refinement_free(refinement); }
-};
-using Surface = std::unique_ptr<welt_surface, Free>;
-using Mesh = std::unique_ptr<welt_mesh, Free>;
-using Refinement = std::unique_ptr<welt_refinement, Free>;
-
-// The polygons are no surface.
-struct Refused : std::runtime_error {
-    using std::runtime_error::runtime_error;
-};
+using welt::Mesh;
 
 // One level of a refinement.
 struct Level {
@@ -35,7 +20,6 @@ struct Jet {
     Vector position, du, dv, duu, duv, dvv;
 };
 
-// Throws Refused for WELT_ERROR_MESH, std::runtime_error for every other failure, as do the functions below.
 Mesh make_mesh(Polygons const& polygons);
 std::vector<Level> refine(Mesh const& mesh, unsigned depth);
 // One level of Loop subdivision.
@@ -50,5 +34,8 @@ LoopLimit loop_limit(Mesh const& mesh);
 // Parameters are two per point.
 std::vector<Jet> evaluate(Mesh const& mesh, std::vector<std::uint32_t> const& faces,
                           std::vector<std::uint32_t> const& corners, std::vector<double> const& parameters);
+// The same on the Loop surface of a triangle mesh.
+std::vector<Jet> evaluate_loop(Mesh const& mesh, std::vector<std::uint32_t> const& faces,
+                               std::vector<double> const& parameters);
 std::vector<Vector> limit_positions(Mesh const& mesh);
 std::vector<Vector> limit_normals(Mesh const& mesh);

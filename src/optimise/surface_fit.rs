@@ -1,0 +1,148 @@
+//! The methods that fit the surface itself: least squares over samples of distance and slope.
+//!
+//! At each sample of the new surface P with foot S and normal n on the frozen one, the distance n.(P - S) and the slopes
+//! n.Pu/|Pu| and n.Pv/|Pv| are to vanish, the slopes weighed by a part of the edge length. Distance alone would make
+//! ripples (docs/optimisation.md). Feet are found anew after each solution (Gauss-Newton; for the distance it is the
+//! tangent distance minimisation of Pottmann and Hofer 2003). While a sample slides, its foot does, and the normal
+//! turns; that is in the equations of the slopes, or they would hold every vertex back.
+
+use super::Stop;
+use super::assembly::Assembly;
+use super::freedom::Freedom;
+use super::guard::Outcome;
+use super::samples::{Sampled, Samples};
+use crate::fault;
+use crate::job::{Cancelled, Job};
+use crate::mesh::{Mesh, VertexId};
+use glam::DVec3;
+use rustc_hash::FxHashMap;
+use smallvec::SmallVec;
+
+/// What a tangential shift costs beside the same distance of a sample.
+const SLIDE_COST: f64 = 1e-4;
+/// What a shift along the normal costs: nothing but definiteness where alternating modes have no limit.
+const NORMAL_COST: f64 = 1e-6;
+/// Solutions at most; two are enough nearly everywhere.
+const STEPS: u32 = 4;
+/// The fit ends when a solution leaves more than this part of the error.
+const GAIN: f64 = 0.98;
+
+/// The problem.
+pub(super) struct SurfaceFit<'a, 'b> {
+    samples: &'b mut Samples<'a>,
+    job: &'b Job,
+    freedoms: Vec<(VertexId, Freedom)>,
+    /// Per sampled face the groups of unknowns of its control vertices that are free, in their order.
+    groups: Vec<SmallVec<[u32; 32]>>,
+    system: Assembly,
+}
+
+impl<'a, 'b> SurfaceFit<'a, 'b> {
+    /// The samples are evaluated at the positions of the mesh.
+    pub(super) fn new(
+        freedoms: Vec<(VertexId, Freedom)>,
+        samples: &'b mut Samples<'a>,
+        job: &'b Job,
+    ) -> Self {
+        let numbers: FxHashMap<VertexId, u32> =
+            freedoms.iter().zip(0..).map(|(&(v, _), group)| (v, group)).collect();
+        let of_face = |face: &Sampled| face.control.iter().filter_map(|v| numbers.get(v).copied()).collect();
+        let groups: Vec<SmallVec<[u32; 32]>> = samples.faces.iter().map(of_face).collect();
+        let sizes: Vec<usize> = freedoms.iter().map(|(_, freedom)| freedom.len()).collect();
+        let system = Assembly::new(&sizes, groups.iter().map(SmallVec::as_slice));
+        Self { samples, job, freedoms, groups, system }
+    }
+
+    /// Moves the vertices and leaves the samples evaluated where they are then.
+    pub(super) fn run(mut self, mesh: &mut Mesh) -> Result<Outcome, Cancelled> {
+        let mut shifts = vec![0.0; self.system.unknowns()];
+        let (mut steps, mut stop) = (0, Stop::StepLimit);
+        let mut error = self.samples.error().all;
+        while steps < STEPS {
+            self.job.step("fit", f64::from(steps) / f64::from(STEPS))?;
+            self.assemble(&shifts)?;
+            let Some(step) = self.system.solve() else { break };
+            for (group, &(v, ref freedom)) in (0..).zip(&self.freedoms) {
+                let along = freedom.iter().zip(&step[self.system.of_group(group)]);
+                let shift: DVec3 = along.map(|(&direction, &x)| direction * x).sum();
+                if shift.is_finite() {
+                    mesh.set_position(v, mesh.position(v) + shift);
+                    fault::point("fit");
+                }
+            }
+            shifts.iter_mut().zip(step).for_each(|(sum, x)| *sum += x);
+            steps += 1;
+            self.samples.evaluate(mesh, self.job)?;
+            let now = self.samples.error().all;
+            if now >= GAIN * error {
+                stop = Stop::Converged;
+                break;
+            }
+            error = now;
+        }
+        Ok(Outcome { steps, stop, residual: self.samples.residual() })
+    }
+
+    /// The normal equations of a step after `shifts`.
+    fn assemble(&mut self, shifts: &[f64]) -> Result<(), Cancelled> {
+        self.system.clear();
+        let mut area = 0.0;
+        let (mut columns, mut matrix, mut vector, mut row) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
+        for (index, (face, groups)) in self.samples.faces.iter().zip(&self.groups).enumerate() {
+            if index % 64 == 0 && self.job.is_cancelled() {
+                return Err(Cancelled);
+            }
+            columns.clear();
+            let mut left = groups.iter().peekable();
+            for (i, &v) in face.control.iter().enumerate() {
+                if let Some(&group) = left.next_if(|&&group| self.freedoms[group as usize].0 == v) {
+                    columns.extend(self.freedoms[group as usize].1.iter().map(|&direction| (i, direction)));
+                }
+            }
+            let count = columns.len();
+            for (array, length) in [(&mut matrix, count * count), (&mut vector, count), (&mut row, count)] {
+                array.clear();
+                array.resize(length, 0.0);
+            }
+            let samples = self.samples.of_face(face);
+            for (sample, (_, weights)) in samples.iter().zip(face.table.samples()) {
+                let Some(foot) = sample.foot else { continue };
+                area += sample.area;
+                let n = foot.normal;
+                for part in 0..3 {
+                    let right = if part == 0 {
+                        for (value, &(i, direction)) in row.iter_mut().zip(&columns) {
+                            *value = weights[i][0] * n.dot(direction);
+                        }
+                        foot.s
+                    } else {
+                        let k = part - 1;
+                        let (factor, turn) = (sample.factors[k], sample.turns[k]);
+                        for (value, &(i, direction)) in row.iter_mut().zip(&columns) {
+                            *value = factor * weights[i][part] * n.dot(direction)
+                                - weights[i][0] * turn.dot(direction);
+                        }
+                        -n.dot(sample.slopes[k])
+                    };
+                    for (a, &value) in row.iter().enumerate() {
+                        let scaled = value * sample.area;
+                        vector[a] += scaled * right;
+                        let line = &mut matrix[a * count..=a * count + a];
+                        line.iter_mut().zip(&row).for_each(|(sum, &x)| *sum += scaled * x);
+                    }
+                }
+            }
+            self.system.add_block(groups, &matrix, &vector);
+        }
+        // As much cost per vertex as the samples weigh in the mean.
+        let share = area / self.freedoms.len().max(1) as f64;
+        for (group, (_, freedom)) in (0..).zip(&self.freedoms) {
+            for (k, unknown) in self.system.of_group(group).enumerate().take(freedom.len()) {
+                let cost = share * if k == 0 { NORMAL_COST } else { SLIDE_COST };
+                self.system.add_diagonal(unknown, cost);
+                self.system.right[unknown] -= cost * shifts[unknown];
+            }
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,152 @@
+//! What queries search: pieces with their boxes, in a tree. Made at the first query, for evaluation does without.
+
+use super::places::Entry;
+use super::tree::Tree;
+use super::{Bicubic, LimitSurface};
+use crate::subdivision::patch_corner::{Corner, Points};
+use glam::DVec3;
+
+/// Levels of pieces that are held beside an extraordinary vertex; deeper ones are made when a query gets there.
+const LEVELS: u32 = 4;
+
+/// Where a piece lies: a square of a patch, turned by quarter turns.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Domain {
+    pub(super) patch: u32,
+    /// Patch parameters of the square's own origin.
+    u: f64,
+    v: f64,
+    /// Quarter turns from the patch's axes to the square's, counter-clockwise.
+    turns: u8,
+    size: f64,
+}
+
+impl Domain {
+    fn whole(patch: u32) -> Self {
+        Self { patch, u: 0.0, v: 0.0, turns: 0, size: 1.0 }
+    }
+
+    /// Patch parameters of the point (s, t) in [0, 1]^2 of the piece.
+    pub(super) fn parameters(&self, s: f64, t: f64) -> (f64, f64) {
+        let (s, t) = (s * self.size, t * self.size);
+        match self.turns {
+            0 => (self.u + s, self.v + t),
+            1 => (self.u - t, self.v + s),
+            2 => (self.u - s, self.v - t),
+            _ => (self.u + t, self.v - s),
+        }
+    }
+
+    /// The same square with its corner `corner` as the origin.
+    fn turned(&self, corner: u8) -> Self {
+        let (s, t) = [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)][usize::from(corner % 4)];
+        let (u, v) = self.parameters(s, t);
+        Self { u, v, turns: (self.turns + corner) % 4, ..*self }
+    }
+
+    /// Domain of side `side` of the extraordinary quad over this square, after one refinement.
+    pub(super) fn side(&self, side: usize) -> Self {
+        let (s, t) = [(0.5, 0.0), (0.5, 0.5), (0.0, 0.5)][side];
+        let (u, v) = self.parameters(s, t);
+        Self { u, v, size: 0.5 * self.size, ..*self }
+    }
+
+    /// Domain of what remains of the extraordinary quad after one refinement.
+    pub(super) fn inner(&self) -> Self {
+        Self { size: 0.5 * self.size, ..*self }
+    }
+}
+
+/// What remains of an extraordinary quad below the pieces.
+#[derive(Clone, Debug)]
+pub(super) struct Rest {
+    corner: u32,
+    /// Of what remains.
+    pub(super) domain: Domain,
+    /// Unit normal at the vertex, zero where there is none.
+    pub(super) normal: DVec3,
+}
+
+/// See the [module](self).
+#[derive(Clone, Default, Debug)]
+pub(super) struct Index {
+    pub(super) tree: Tree,
+    /// Per item of the tree below the rests, which are the bicubics of the surface and then `pieces`.
+    domains: Vec<Domain>,
+    /// Pieces beside extraordinary vertices.
+    pieces: Vec<Bicubic>,
+    rests: Vec<Rest>,
+}
+
+/// An item of the tree.
+pub(super) enum Item<'a> {
+    Piece(&'a Bicubic, &'a Domain),
+    Rest(&'a Rest),
+}
+
+impl Rest {
+    /// The quad that remains.
+    pub(super) fn corner(&self, surface: &LimitSurface) -> Corner {
+        let mut corner = surface.corners.corner(self.corner);
+        let mut scratch = Points::new();
+        for _ in 0..LEVELS {
+            corner.refine(&mut scratch);
+        }
+        corner
+    }
+}
+
+impl Index {
+    pub(super) fn new(surface: &LimitSurface) -> Self {
+        let mut index = Self { domains: vec![Domain::whole(0); surface.bicubics.len()], ..Self::default() };
+        let mut boxes: Vec<(DVec3, DVec3)> = surface.bicubics.iter().map(Bicubic::bounds).collect();
+        let mut rest_boxes = Vec::with_capacity(surface.corners.entries.len());
+        let mut scratch = Points::new();
+        let mut open: Vec<(Entry, Domain)> = Vec::new();
+        for (&entry, patch) in surface.patches.iter().zip(0..) {
+            open.push((entry, Domain::whole(patch)));
+            while let Some((entry, domain)) = open.pop() {
+                match entry {
+                    Entry::Regular(bicubic) => index.domains[bicubic as usize] = domain,
+                    Entry::Split(first) => {
+                        let quarters = &surface.parts[first as usize..][..4];
+                        let places = [0, 1, 2, 3].map(|corner| domain.turned(corner).inner());
+                        open.extend(quarters.iter().copied().zip(places));
+                    }
+                    Entry::Corner { corner: number, turns } => {
+                        let mut domain = domain.turned(turns);
+                        let mut corner = surface.corners.corner(number);
+                        let normal = surface.corners.normal(number);
+                        for _ in 0..LEVELS {
+                            for (side, grid) in corner.refine(&mut scratch).iter().enumerate() {
+                                let grid = grid.map(|row| row.map(|p| p + corner.origin));
+                                let piece = Bicubic::from_bspline(&grid);
+                                boxes.push(piece.bounds());
+                                index.pieces.push(piece);
+                                index.domains.push(domain.side(side));
+                            }
+                            domain = domain.inner();
+                        }
+                        rest_boxes.push(corner.bounds());
+                        index.rests.push(Rest { corner: number, domain, normal });
+                    }
+                }
+            }
+        }
+        boxes.append(&mut rest_boxes);
+        index.tree = Tree::new(&boxes);
+        index
+    }
+
+    pub(super) fn item<'a>(&'a self, surface: &'a LimitSurface, item: u32) -> Item<'a> {
+        let item = item as usize;
+        match self.domains.get(item) {
+            None => Item::Rest(&self.rests[item - self.domains.len()]),
+            Some(domain) => {
+                let held = surface.bicubics.len();
+                let bicubic = if item < held { &surface.bicubics[item] } else { &self.pieces[item - held] };
+                Item::Piece(bicubic, domain)
+            }
+        }
+    }
+}

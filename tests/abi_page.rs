@@ -1,0 +1,65 @@
+//! Every statement of `docs/abi.md` names tests, and these exist.
+
+use std::path::Path;
+
+/// The (file, names) that a text refers to as "`file`: `name`, `name`".
+fn references(text: &str) -> Vec<(&str, Vec<&str>)> {
+    let parts: Vec<&str> = text.split('`').collect();
+    let mut found: Vec<(&str, Vec<&str>)> = Vec::new();
+    // Odd parts stand between backquotes, each followed by what comes after it.
+    for pair in parts.get(1..).unwrap_or_default().chunks_exact(2) {
+        let (quoted, after) = (pair[0], pair[1]);
+        let is_file = (quoted.starts_with("tests/") || quoted.starts_with("src/")) && after.starts_with(':');
+        if is_file {
+            found.push((quoted, Vec::new()));
+        } else if let Some((_, names)) = found.last_mut() {
+            names.push(quoted);
+        }
+    }
+    found
+}
+
+/// Whether the source of a file has a test of this name that is run.
+fn has_test(file: &str, source: &str, name: &str) -> bool {
+    let squeezed = source.split_whitespace().collect::<Vec<_>>().join(" ");
+    match file.rsplit('.').next() {
+        Some("rs") => squeezed
+            .split("#[test]")
+            .skip(1)
+            .any(|test| test.split('{').next().unwrap_or_default().contains(&format!("fn {name}("))),
+        Some("txt") => {
+            // Some names are made in a loop: foreach(name abi arguments) ... welt_c_test(${name}_valgrind.
+            let direct = squeezed.contains(&format!("welt_c_test({name} "));
+            let made = name.rsplit_once('_').is_some_and(|(stem, kind)| {
+                squeezed.contains(&format!("welt_c_test(${{name}}_{kind} "))
+                    && squeezed.split("foreach(name ").skip(1).any(|list| {
+                        list.split(')').next().unwrap_or_default().split(' ').any(|entry| entry == stem)
+                    })
+            });
+            direct || made
+        }
+        _ => {
+            let defined = squeezed.contains(&format!("void {name}("));
+            defined && squeezed.matches(&format!("{name}(")).count() > 1
+        }
+    }
+}
+
+#[test]
+fn every_statement_names_tests_that_exist() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let page = std::fs::read_to_string(root.join("docs/abi.md")).unwrap();
+    let statements: Vec<&str> =
+        page.split("\n- ").skip(1).map(|part| part.split("\n\n").next().unwrap_or_default()).collect();
+    assert!(statements.len() > 25, "the page is read");
+    for statement in statements {
+        let references = references(statement);
+        assert!(references.iter().any(|(_, names)| !names.is_empty()), "no test holds this: {statement}");
+        for (file, names) in references {
+            let source = std::fs::read_to_string(root.join(file)).unwrap_or_else(|_| panic!("no {file}"));
+            for name in names {
+                assert!(has_test(file, &source, name), "{file} has no test {name}: {statement}");
+            }
+        }
+    }
+}

@@ -1,0 +1,225 @@
+/* Values that a call cannot take: structs of other sizes, numbers that are none, constants that do not exist; and the
+ * arithmetic of versions. NULL and wrong counts are in hostile.cpp. */
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+#include <welt.h>
+
+#define NUL ((size_t)-1)
+
+static int failures = 0;
+
+static void check(int holds, const char *what) {
+    if (!holds) {
+        printf("FAILED: %s\n", what);
+        ++failures;
+    }
+}
+
+/* The preprocessor knows the version as well. */
+#if WELT_VERSION != WELT_VERSION_MAJOR * 65536 + WELT_VERSION_MINOR * 256 + WELT_VERSION_PATCH
+#error "WELT_VERSION is not what its parts say"
+#endif
+#if WELT_VERSION_MINOR > 255 || WELT_VERSION_PATCH > 255
+#error "a part of the version needs more than eight bits"
+#endif
+
+static void versions(void) {
+    char text[32];
+    uint32_t version = welt_version();
+    sprintf(text, "%lu.%lu.%lu", (unsigned long)(version >> 16), (unsigned long)(version >> 8 & 255),
+            (unsigned long)(version & 255));
+    check(strcmp(text, welt_version_string()) == 0, "number and text of the version agree");
+    check(version == WELT_VERSION, "header and library are of one version");
+    check(welt_is_compatible(WELT_VERSION, WELT_ABI_VERSION) == 1, "the header fits");
+    check(welt_is_compatible(0, WELT_ABI_VERSION) == 1, "an older header fits");
+    check(welt_is_compatible(WELT_VERSION + 1, WELT_ABI_VERSION) == 0, "a newer header does not");
+    check(welt_is_compatible(UINT32_MAX, WELT_ABI_VERSION) == 0, "nor the newest");
+    check(welt_is_compatible(WELT_VERSION, WELT_ABI_VERSION + 1) == 0, "nor another interface");
+}
+
+static const char *triangle = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+
+static int32_t import(const welt_import_options *options, uint32_t format, welt_mesh **mesh) {
+    return welt_mesh_import_memory(NULL, 0, format, (const uint8_t *)triangle, strlen(triangle), options, mesh, NULL,
+                                   NULL);
+}
+
+/* A sheet of 3 by 3 squares. */
+static welt_mesh *sheet(void) {
+    uint32_t sizes[9], corners[36], i;
+    double positions[48];
+    welt_mesh *mesh = NULL;
+    for (i = 0; i < 16; ++i) {
+        positions[3 * i] = i % 4;
+        positions[3 * i + 1] = (double)(i / 4);
+        positions[3 * i + 2] = 0.0;
+    }
+    for (i = 0; i < 9; ++i) {
+        uint32_t first = i % 3 + 4 * (i / 3);
+        sizes[i] = 4;
+        corners[4 * i] = first;
+        corners[4 * i + 1] = first + 1;
+        corners[4 * i + 2] = first + 5;
+        corners[4 * i + 3] = first + 4;
+    }
+    check(welt_mesh_create(sizes, 9, corners, 36, positions, 16, 0, &mesh, NULL) == WELT_OK, "sheet");
+    return mesh;
+}
+
+/* A struct of options that is followed by bytes which nobody may touch. */
+typedef int32_t (*initialise)(void *options, size_t size);
+
+static int32_t initialise_import(void *options, size_t size) {
+    return welt_import_options_init((welt_import_options *)options, size);
+}
+
+static int32_t initialise_feature(void *options, size_t size) {
+    return welt_feature_options_init((welt_feature_options *)options, size);
+}
+
+/* Whether a call accepts a struct whose first member is this size. */
+static int32_t use_import(const void *options) {
+    welt_mesh *mesh = NULL;
+    int32_t status = import((const welt_import_options *)options, WELT_FORMAT_OBJ, &mesh);
+    welt_mesh_free(mesh);
+    return status;
+}
+
+static int32_t use_feature(const void *options) {
+    welt_mesh *mesh = sheet();
+    welt_selection *selection = NULL;
+    int32_t status;
+    check(welt_selection_create(mesh, "ring:1,2", NUL, &selection, NULL) == WELT_OK, "ring");
+    status = welt_feature_apply(mesh, selection, "groove", NUL, "width=0.2 depth=0.1", NUL,
+                                (const welt_feature_options *)options, NULL, NULL, NULL);
+    check(welt_mesh_vertex_count(mesh) == (status == WELT_OK ? 28u : 16u), "a refused call changes nothing");
+    welt_selection_free(selection);
+    welt_mesh_free(mesh);
+    return status;
+}
+
+/* first: size of the first version that was released; last: that of the present one. */
+static void sizes(const char *name, initialise init, int32_t (*use)(const void *), size_t first, size_t last) {
+    union {
+        unsigned char bytes[256];
+        uint32_t size;
+        double alignment;
+    } options;
+    const size_t huge[3] = {(size_t)-1, (size_t)-1 / 2, (size_t)65536 * 65535};
+    size_t size, i;
+    for (size = 0; size <= 128; ++size) {
+        int32_t status;
+        memset(&options, 0xa5, sizeof options);
+        status = init(&options, size);
+        check(status == (size >= first && size <= last ? WELT_OK : WELT_ERROR_ARGUMENT), name);
+        for (i = status == WELT_OK ? size : 0; i < sizeof options; ++i)
+            if (options.bytes[i] != 0xa5) break;
+        check(i == sizeof options, "no byte is written beyond the size");
+        if (status == WELT_OK) check(options.size == size, "the struct knows its size");
+    }
+    memset(&options, 0xa5, sizeof options);
+    for (i = 0; i < 3; ++i) check(init(&options, huge[i]) == WELT_ERROR_ARGUMENT, "a huge size");
+    check(options.bytes[0] == 0xa5, "nothing is written");
+
+    check(init(&options, last) == WELT_OK && use(&options) == WELT_OK, name);
+    check(init(&options, first) == WELT_OK, name);
+    memset(options.bytes + first, 0xa5, sizeof options - first);
+    check(use(&options) == WELT_OK, "an old caller's struct is not read beyond its size");
+    options.size = 0;
+    check(use(&options) == WELT_ERROR_ARGUMENT, "a struct that was never set");
+    options.size = (uint32_t)first - 1;
+    check(use(&options) == WELT_ERROR_ARGUMENT, "a struct that is too small");
+    options.size = (uint32_t)last + 8;
+    check(use(&options) == WELT_ERROR_ARGUMENT, "a struct of a newer header");
+    options.size = UINT32_MAX;
+    check(use(&options) == WELT_ERROR_ARGUMENT, "a struct of a size that cannot be");
+}
+
+static void constants_that_do_not_exist(void) {
+    const uint32_t wrong[3] = {3, 1000, UINT32_MAX};
+    welt_mesh *mesh = sheet(), *none = NULL;
+    welt_surface *surface = NULL;
+    welt_selection *selection = NULL;
+    welt_feature_options options;
+    int i;
+    check(welt_surface_create(mesh, NULL, 0, NULL, &surface, NULL) == WELT_OK, "surface");
+    check(welt_selection_create(mesh, "ring:1,2", NUL, &selection, NULL) == WELT_OK, "ring");
+    check(welt_feature_options_init(&options, sizeof options) == WELT_OK, "options");
+    for (i = 0; i < 3; ++i) {
+        check(welt_mesh_set_subdivision(mesh, wrong[i], 0, NULL) == WELT_ERROR_ARGUMENT, "WELT_BOUNDARY_*");
+        check(welt_mesh_set_subdivision(mesh, 0, wrong[i], NULL) == WELT_ERROR_ARGUMENT, "WELT_CREASING_*");
+        check(import(NULL, wrong[i], &none) == WELT_ERROR_ARGUMENT && !none, "WELT_FORMAT_*");
+        check(welt_mesh_fit(mesh, NULL, 0, surface, wrong[i], NULL, NULL, NULL) == WELT_ERROR_ARGUMENT, "WELT_FIT_*");
+        options.fit = wrong[i];
+        check(welt_feature_apply(mesh, selection, "groove", NUL, NULL, 0, &options, NULL, NULL, NULL) ==
+                  WELT_ERROR_ARGUMENT,
+              "WELT_FIT_* of options");
+    }
+    check(welt_mesh_vertex_count(mesh) == 16, "the mesh is as it was");
+    welt_selection_free(selection);
+    welt_surface_free(surface);
+    welt_mesh_free(mesh);
+}
+
+/* Every number that a call reads, as none: kind 0 is NaN, 1 and 2 are the infinities. */
+static void numbers_that_are_none(int kind) {
+    const double bad = kind == 0 ? -sqrt(-1.0) : kind == 1 ? HUGE_VAL : -HUGE_VAL;
+    const char *const width = kind == 0 ? "width=nan depth=0.1" : kind == 1 ? "width=inf depth=0.1" : "width=0.1 depth=-inf";
+    const uint32_t face = 4, edge[2] = {5, 6};
+    double positions[48], parameters[2], values[18];
+    const double *view = NULL;
+    float sharpness = (float)bad;
+    welt_mesh *mesh = sheet(), *none = NULL;
+    welt_surface *surface = NULL;
+    welt_selection *selection = NULL;
+    welt_import_options options;
+    const uint32_t size = 3, corners[3] = {0, 1, 2};
+
+    check(welt_mesh_positions(mesh, &view, NULL) == WELT_OK, "view");
+    memcpy(positions, view, sizeof positions);
+    positions[7] = bad;
+    check(welt_mesh_set_positions(mesh, positions, 16, 0, NULL) == WELT_ERROR_MESH, "positions");
+    check(welt_mesh_create(&size, 1, corners, 3, positions, 3, 0, &none, NULL) == WELT_ERROR_MESH && !none, "a mesh");
+    check(welt_mesh_displace(mesh, edge, &bad, 1, NULL) == WELT_ERROR_ARGUMENT, "a height");
+    check(welt_import_options_init(&options, sizeof options) == WELT_OK, "options");
+    options.weld = bad;
+    if (kind < 2) check(import(&options, WELT_FORMAT_OBJ, &none) == WELT_ERROR_ARGUMENT && !none, "a welding distance");
+    /* Infinite sharpness is sharp. */
+    if (kind != 1) {
+        check(welt_mesh_set_edge_sharpness(mesh, edge, &sharpness, 1, NULL) == WELT_ERROR_ARGUMENT, "an edge");
+        check(welt_mesh_set_vertex_sharpness(mesh, edge, &sharpness, 1, NULL) == WELT_ERROR_ARGUMENT, "a vertex");
+    }
+    check(welt_selection_create(mesh, "ring:1,2", NUL, &selection, NULL) == WELT_OK, "ring");
+    check(welt_feature_apply(mesh, selection, "groove", NUL, width, NUL, NULL, NULL, NULL, NULL) == WELT_ERROR_ARGUMENT,
+          width);
+    check(welt_surface_create(mesh, NULL, 0, NULL, &surface, NULL) == WELT_OK, "surface");
+    parameters[0] = 0.5;
+    parameters[1] = bad;
+    if (kind == 0) {
+        check(welt_surface_evaluate(surface, &face, NULL, parameters, 1, values, 18, NULL) == WELT_ERROR_ARGUMENT,
+              "a parameter");
+    } else {
+        check(welt_surface_evaluate(surface, &face, NULL, parameters, 1, values, 18, NULL) == WELT_OK, "a parameter");
+        check(fabs(values[1] - (kind == 1 ? 2.0 : 1.0)) < 1e-14, "is moved to the nearest inside");
+    }
+    check(welt_mesh_positions(mesh, &view, NULL) == WELT_OK && welt_mesh_vertex_count(mesh) == 16, "view");
+    positions[7] = view[7];
+    check(memcmp(positions, view, sizeof positions) == 0, "the mesh is as it was");
+    welt_surface_free(surface);
+    welt_selection_free(selection);
+    welt_mesh_free(mesh);
+}
+
+int main(void) {
+    versions();
+    sizes("welt_import_options_init", initialise_import, use_import, 16, sizeof(welt_import_options));
+    sizes("welt_feature_options_init", initialise_feature, use_feature, 16, sizeof(welt_feature_options));
+    constants_that_do_not_exist();
+    numbers_that_are_none(0);
+    numbers_that_are_none(1);
+    numbers_that_are_none(2);
+    printf("%d failures\n", failures);
+    return failures != 0;
+}

@@ -1,0 +1,185 @@
+//! A random feature on random marks of a random model.
+
+use super::random::Random;
+use std::collections::BTreeMap;
+use std::fmt;
+use welt::feature::{self, FeatureError, Options, Profile, Report, Request};
+use welt::job::Job;
+use welt::mark::parity::Mode;
+use welt::mark::{Mark, Selection, Selector, Shape};
+use welt::mesh::{FaceId, Mesh};
+use welt::optimise::Method;
+
+/// More marks take more time and find no more.
+const MOST_MARKS: usize = 20;
+
+pub struct Model {
+    pub name: String,
+    pub mesh: Mesh,
+}
+
+pub struct Case<'m> {
+    pub model: &'m Model,
+    pub marks: Vec<Mark>,
+    /// The features, as in `--feature`, and their parameters, as in `--set`.
+    pub features: Vec<String>,
+    pub settings: Vec<String>,
+    pub request: Request,
+    pub options: Options,
+    /// Nothing is moved off the surface.
+    pub is_flat: bool,
+    /// For whatever else a property leaves to chance.
+    pub seed: u64,
+}
+
+impl<'m> Case<'m> {
+    /// `None` where the marks that were tried do not exist.
+    pub fn random(models: &'m [Model], random: &mut Random) -> Option<Self> {
+        let model = &models[random.below(models.len())];
+        let mut marks: BTreeMap<u32, Mark> = BTreeMap::new();
+        for _ in 0..1 + random.below(3) {
+            for mark in some_marks(&model.mesh, random) {
+                marks.entry(mark.half_edge.edge()).or_insert(mark);
+            }
+        }
+        if marks.is_empty() {
+            return None;
+        }
+        let percent = |x: f64| format!("{}%", (1000.0 * x).round() / 10.0);
+        let first = random.pick(&["groove", "groove", "groove", "ridge", "piping", "step", "bead", "loop"]);
+        let features = vec![first.to_owned()];
+        let mut settings = Vec::new();
+        let is_flat = random.once_in(3);
+        for name in Profile::named(first).ok()?.parameters.iter().map(|p| p.name.as_str()) {
+            match name {
+                "width" => settings.push(format!("width={}", percent(random.between(0.1, 0.4)))),
+                "depth" | "height" if is_flat => settings.push(format!("{name}=0")),
+                "depth" | "height" => settings.push(format!("{name}={}", percent(random.between(0.02, 0.2)))),
+                _ => {}
+            }
+        }
+        let request = Request::features(&features, &settings).ok()?;
+        let options = Options {
+            method: random.pick(&[Method::None, Method::None, Method::Solve]),
+            parity: random.pick(&[Mode::Auto, Mode::AllQuad, Mode::Local]),
+            strict: random.once_in(10),
+            ..Options::default()
+        };
+        let mut marks: Vec<Mark> = marks.into_values().collect();
+        let start = random.below(marks.len());
+        marks.rotate_left(start);
+        marks.truncate(MOST_MARKS);
+        Some(Self { model, marks, features, settings, request, options, is_flat, seed: random.bits() })
+    }
+
+    pub fn apply(&self, mesh: &mut Mesh) -> Result<Report, FeatureError> {
+        self.apply_to(mesh, &self.marks)
+    }
+
+    /// The same feature on marks of another mesh.
+    pub fn apply_to(&self, mesh: &mut Mesh, marks: &[Mark]) -> Result<Report, FeatureError> {
+        let selection = Selection { marks: marks.to_vec(), ..Selection::default() };
+        feature::apply(mesh, &selection, &self.request, &self.options, &Job::new())
+    }
+
+    /// Leaves out marks as long as the case `fails`.
+    pub fn reduce(&mut self, fails: impl Fn(&Self) -> bool) {
+        let mut size = self.marks.len().div_ceil(2);
+        while size > 0 {
+            let mut start = 0;
+            while start < self.marks.len() {
+                let end = (start + size).min(self.marks.len());
+                let removed: Vec<Mark> = self.marks.drain(start..end).collect();
+                if self.marks.is_empty() || !fails(self) {
+                    self.marks.splice(start..start, removed);
+                    start = end;
+                }
+            }
+            size = if size == 1 { 0 } else { size.div_ceil(2) };
+        }
+    }
+}
+
+impl fmt::Display for Case<'_> {
+    /// As a call of the program.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Options { method, parity, strict, .. } = &self.options;
+        write!(f, "welt apply {} -o out.obj", self.model.name)?;
+        self.features.iter().try_for_each(|feature| write!(f, " --feature {feature}"))?;
+        self.settings.iter().try_for_each(|setting| write!(f, " --set {setting}"))?;
+        write!(
+            f,
+            " --optimise {} --parity {}",
+            method.name(),
+            match parity {
+                Mode::Auto => "auto",
+                Mode::AllQuad => "all-quad",
+                Mode::Local => "local",
+            }
+        )?;
+        if *strict {
+            write!(f, " --strict")?;
+        }
+        for mark in &self.marks {
+            let (a, b) = (self.model.mesh.source(mark.half_edge).0, self.model.mesh.target(mark.half_edge).0);
+            write!(f, " --mark edge:{a},{b}@{}#{}", mark.t, mark.kind)?;
+        }
+        Ok(())
+    }
+}
+
+/// Marks of one random selector.
+fn some_marks(mesh: &Mesh, random: &mut Random) -> Vec<Mark> {
+    let edges: Vec<_> = mesh.edges().collect();
+    let start = random.pick(&edges);
+    let edge = (mesh.source(start).0, mesh.target(start).0);
+    let kind = random.pick(&["red", "red", "red", "ridge", "piping"]).to_owned();
+    let resolve = |shape| {
+        let selector = Selector { shape, kind: kind.clone() };
+        Selection::resolve(mesh, &[selector]).map(|selection| selection.marks).unwrap_or_default()
+    };
+    let near = |rings: usize| {
+        let mut faces: Vec<FaceId> = mesh.outgoing(mesh.source(start)).map(|h| mesh.face(h)).collect();
+        faces.retain(|f| !f.is_boundary());
+        for _ in 0..rings {
+            faces = mesh.grow_faces(&faces);
+        }
+        faces
+    };
+    let mut marks = match random.below(6) {
+        0 => resolve(Shape::Ring { edge }),
+        1 => {
+            let faces = near(3);
+            let goal = mesh.face_half_edges(random.pick(&faces)).nth(random.below(3)).unwrap_or(start);
+            resolve(Shape::Path { from: edge, to: (mesh.source(goal).0, mesh.target(goal).0) })
+        }
+        2 => {
+            let faces = near(random.below(3));
+            let vertices = faces.iter().flat_map(|&f| mesh.face_vertices(f)).map(|v| v.0).collect();
+            resolve(Shape::Cut { vertices })
+        }
+        3 => vec![Mark { half_edge: start, t: 0.5, kind: kind.clone(), breadth: None }],
+        which => {
+            // A random subset of a neighbourhood, or of the whole mesh.
+            let faces = if which == 4 { near(1 + random.below(3)) } else { mesh.faces().collect() };
+            let share = if which == 4 { 2 + random.below(6) } else { faces.len() / 4 + 1 };
+            let all = faces.iter().flat_map(|&f| mesh.face_half_edges(f));
+            all.filter(|_| random.once_in(share))
+                .map(|half_edge| Mark { half_edge, t: 0.5, kind: kind.clone(), breadth: None })
+                .collect()
+        }
+    };
+    // Places: in the middle, all in one place, or each in its own; now and then too near to an end.
+    match random.below(4) {
+        0 | 1 => {}
+        2 => {
+            let t = random.between(0.3, 0.7);
+            marks.iter_mut().for_each(|mark| mark.t = t);
+        }
+        _ => {
+            let far = if random.once_in(4) { 0.49 } else { 0.2 };
+            marks.iter_mut().for_each(|mark| mark.t = random.between(0.5 - far, 0.5 + far));
+        }
+    }
+    marks
+}
