@@ -5,6 +5,7 @@ use super::error::Failure;
 use super::figure::{View, draw, limit_picture};
 use super::files;
 use super::output::print;
+use super::scenes::SCENES;
 use glam::DVec3;
 use std::io::Write;
 use std::process::ExitCode;
@@ -15,52 +16,7 @@ use welt::job::Job;
 use welt::mark::{Selection, Selector};
 use welt::surface::SAMPLES;
 
-/// One example.
-struct Scene {
-    name: &'static str,
-    title: &'static str,
-    model: &'static str,
-    features: &'static [&'static str],
-    marks: &'static [&'static str],
-    set: &'static [&'static str],
-    viewer: DVec3,
-    zoom: Option<f64>,
-}
-
 const LEAF: &str = include_str!("../../tests/data/models/leaf_chair.obj");
-
-const SCENES: [Scene; 3] = [
-    Scene {
-        name: "ring",
-        title: "A groove round a shell chair (one click: ring:3,331)",
-        model: LEAF,
-        features: &["groove"],
-        marks: &["ring:3,331"],
-        set: &["width=1.6", "depth=0.6"],
-        viewer: DVec3::new(-0.9, 0.6, 1.5),
-        zoom: None,
-    },
-    Scene {
-        name: "corner",
-        title: "A seam with four corners (cut:442,1071,443,422,444,57)",
-        model: LEAF,
-        features: &["groove"],
-        marks: &["cut:442,1071,443,422,444,57"],
-        set: &["width=1.2", "depth=0.5"],
-        viewer: DVec3::new(-0.6, 0.5, 1.5),
-        zoom: Some(2.0),
-    },
-    Scene {
-        name: "crossing",
-        title: "Two raised seams that cross (ring:3,331 and ring:16,333)",
-        model: LEAF,
-        features: &["ridge"],
-        marks: &["ring:3,331", "ring:16,333"],
-        set: &["width=1.6", "height=0.5"],
-        viewer: DVec3::new(-0.9, 0.6, 1.5),
-        zoom: None,
-    },
-];
 
 pub fn run(arguments: &Demo) -> Result<ExitCode, Failure> {
     let folder = &arguments.folder;
@@ -68,18 +24,17 @@ pub fn run(arguments: &Demo) -> Result<ExitCode, Failure> {
     for scene in &SCENES {
         let start = Instant::now();
         let before =
-            io::import_bytes(scene.name, Format::Obj, scene.model.as_bytes(), &ImportOptions::default())?
-                .mesh;
+            io::import_bytes(scene.name, Format::Obj, LEAF.as_bytes(), &ImportOptions::default())?.mesh;
         let selectors: Vec<Selector> =
             scene.marks.iter().map(|text| Selector::parse(text)).collect::<Result<_, _>>()?;
-        let options = Options { samples: SAMPLES, ..Options::default() };
+        let options = Options { samples: SAMPLES, method: scene.method, ..Options::default() };
         let request = Request::features(scene.features, scene.set)?;
         let selection = Selection::resolve(&before, &selectors)?;
         let mut after = before.clone();
         let report = feature::apply(&mut after, &selection, &request, &options, &Job::new())?;
 
         let limit = limit_picture(&before, &after, &report)?;
-        let view = View { viewer: scene.viewer, up: DVec3::Y, zoom: scene.zoom };
+        let view = View { viewer: scene.view.viewer(), up: DVec3::Y, zoom: scene.view.zoom() };
         let image = draw(scene.title, &after, &report, &limit, view);
         let path = |suffix: &str| folder.join(format!("{}{suffix}", scene.name));
         files::export(&path(".obj"), &after)?;

@@ -14,6 +14,7 @@ mod output;
 mod progress;
 mod quality;
 mod rules;
+mod scenes;
 
 use args::{Arguments, Command};
 use clap::Parser;

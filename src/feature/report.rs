@@ -276,6 +276,13 @@ impl fmt::Display for Report {
             },
             self.fit.residual
         )?;
+        if self.fit.held > 0 {
+            writeln!(
+                f,
+                "fit: {} vertices held, where the fit would have made the surface worse",
+                self.fit.held
+            )?;
+        }
         if !self.fit.missed.is_empty() {
             writeln!(f, "fit: {} vertices found no surface to fit to", self.fit.missed.len())?;
         }

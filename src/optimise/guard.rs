@@ -18,6 +18,8 @@ pub(super) struct Outcome {
     pub(super) stop: Stop,
     /// Largest distance after the last step.
     pub(super) residual: f64,
+    /// Vertices that were held, because the surface would have become worse.
+    pub(super) held: usize,
 }
 
 /// Runs `fit` on `free` vertices, and again on fewer of them as long as some faces are worse than at the start. It gets
@@ -37,7 +39,7 @@ pub(super) fn guarded<'a>(
         let worse = samples.worse_than(mesh, &errors);
         let is_last = worse.is_empty() || repeat == REPEATS;
         if is_last && samples.is_as_near(error) {
-            return Ok(outcome);
+            return Ok(Outcome { held: start.len() - free.len(), ..outcome });
         }
         for &(v, position) in &start {
             mesh.set_position(v, position);
@@ -48,5 +50,5 @@ pub(super) fn guarded<'a>(
         }
         free.retain(|v| !worse.contains(v));
     }
-    Ok(Outcome { steps: 0, stop: Stop::Nothing, residual: samples.residual() })
+    Ok(Outcome { steps: 0, stop: Stop::Nothing, residual: samples.residual(), held: start.len() })
 }

@@ -112,6 +112,8 @@ pub struct FitReport {
     /// Largest distance to the frozen surface after the last step, of a limit point along its line or, for the surface
     /// fits, of a sample (model units).
     pub residual: f64,
+    /// Active vertices that were held where they are, because the surface would have become worse than without a fit.
+    pub held: usize,
     /// Active vertices whose line and closest point found no frozen surface; they were not fitted.
     pub missed: Vec<u32>,
 }
@@ -186,8 +188,15 @@ pub fn fit(
     method: Method,
     job: &Job,
 ) -> Result<FitReport, Cancelled> {
-    let mut report =
-        FitReport { method, active: 0, steps: 0, stop: Stop::Nothing, residual: 0.0, missed: Vec::new() };
+    let mut report = FitReport {
+        method,
+        active: 0,
+        steps: 0,
+        stop: Stop::Nothing,
+        residual: 0.0,
+        held: 0,
+        missed: Vec::new(),
+    };
     if method == Method::None || active.is_empty() {
         return Ok(report);
     }
@@ -232,6 +241,7 @@ pub fn fit(
     report.stop = outcome.stop;
     report.steps = outcome.steps.max(rim_steps);
     report.residual = outcome.residual.max(rim_gap);
+    report.held = outcome.held;
     missed.sort_unstable();
     report.missed = missed;
     Ok(report)

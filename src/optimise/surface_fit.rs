@@ -80,7 +80,7 @@ impl<'a, 'b> SurfaceFit<'a, 'b> {
             }
             error = now;
         }
-        Ok(Outcome { steps, stop, residual: self.samples.residual() })
+        Ok(Outcome { steps, stop, residual: self.samples.residual(), held: 0 })
     }
 
     /// The normal equations of a step after `shifts`.

@@ -85,8 +85,9 @@ pub fn result_is_the_same(case: &Case) -> Result<(), String> {
             if one.rules.iter().any(|(rule, count)| rule == "Unlike" && *count > 0) {
                 return Ok(());
             }
-            // A fit that has not converged after its steps may end elsewhere: its positions are not compared.
-            if one.fit.stop == Stop::StepLimit || two.fit.stop == Stop::StepLimit {
+            // A fit that has not converged after its steps may end elsewhere, and one that made the surface worse first was
+            // such: their positions are not compared.
+            if [&one, &two].iter().any(|report| report.fit.stop == Stop::StepLimit || report.fit.held > 0) {
                 return Ok(());
             }
             same_surface(&first.to_polygons(), &second.to_polygons(), size)
