@@ -4,7 +4,7 @@ mod common;
 
 use std::path::Path;
 use std::process::Command;
-use welt::grammar::RuleSet;
+use welt::grammar::{Case, RuleSet};
 use welt::picture::rule_svg;
 
 fn rules(text: &str) -> RuleSet {
@@ -201,7 +201,17 @@ fn the_project_s_rules_have_no_warnings_and_drawings() {
         let warnings: Vec<String> = set.warnings().iter().map(ToString::to_string).collect();
         assert!(warnings.is_empty(), "{}", warnings.join("\n"));
         for rule in set.rules() {
-            let svg = rule_svg(&set, rule);
+            let svg = rule_svg(&set, rule, None);
+            // Conditions and attributes that a pattern does not name are those of the case.
+            let case = Case::load(
+                &path
+                    .with_file_name("../tests/rules")
+                    .join(set.name().trim_end_matches(".rules"))
+                    .join(format!("{}.case", rule.name)),
+            );
+            if let Ok(case) = &case {
+                assert!(!rule_svg(&set, rule, Some(case)).contains("the action needs more"), "{}", rule.name);
+            }
             assert!(svg.starts_with("<svg ") && svg.ends_with("</svg>\n") && !svg.contains("NaN"), "{svg}");
         }
     }
@@ -210,7 +220,7 @@ fn the_project_s_rules_have_no_warnings_and_drawings() {
 /// Lines of new edges (bolder), vertices, marks and links in a drawing of the first rule.
 fn drawn(text: &str) -> [usize; 4] {
     let set = rules(text);
-    let svg = rule_svg(&set, &set.rules()[0]);
+    let svg = rule_svg(&set, &set.rules()[0], None);
     ["stroke-width:2.6", "<circle", "stroke:#c8102e", "<path d=\"M0 0L10"]
         .map(|part| svg.matches(part).count())
 }
@@ -232,10 +242,11 @@ fn drawings_show_what_the_rule_does() {
     // The action fails on the drawing: it says why.
     let set = rules("rule A { e(t) } action { \"too narrow\" throw }");
     assert!(
-        rule_svg(&set, &set.rules()[0]).contains("the action needs more: the script threw \"too narrow\"")
+        rule_svg(&set, &set.rules()[0], None)
+            .contains("the action needs more: the script threw \"too narrow\"")
     );
     let set = rules("rule A { a(t) mate> b mate> c } action { a \"t\" attrdel }");
-    assert!(rule_svg(&set, &set.rules()[0]).contains("no drawing: "));
+    assert!(rule_svg(&set, &set.rules()[0], None).contains("no drawing: "));
 }
 
 #[test]

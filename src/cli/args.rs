@@ -234,6 +234,9 @@ pub enum RulesAction {
         /// Folder for the drawings, one SVG per rule; it is made if missing
         #[arg(short, long, value_name = "DIR")]
         output: PathBuf,
+        /// Folder of before/after cases: a rule that cannot be drawn from its pattern alone is drawn by RULE.case
+        #[arg(long, value_name = "DIR")]
+        cases: Option<PathBuf>,
     },
     /// Run before/after cases of rules; exit code 1 when one does not pass
     Test {

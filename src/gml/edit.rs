@@ -74,6 +74,7 @@ impl Execution<'_, '_, '_> {
         let corners: usize = faces.iter().map(Vec::len).sum();
         // Each round of the tiling looks at all faces that are left.
         self.environment.budget.spend_many((corners * faces.len().max(1)) as u64)?;
+        self.environment.budget.edit(2 * corners as u64)?;
         let tiled = self.environment.mesh.tile_face(e, &positions, &faces);
         let inner = tiled.map_err(|problem| error(format!("makeFaces: {problem}")))?;
         self.push_array(inner.into_iter().map(|v| Value::Node(Node::Vertex(v))).collect())

@@ -1,7 +1,7 @@
 //! A rule as a drawing: left what its pattern matches, right what its action makes of it (Thaller, Augsdoerfer,
 //! Fellner 2016, Figure 4): marks red, links as blue arrows.
 
-use crate::grammar::{Rule, RuleSet, Sample};
+use crate::grammar::{Case, Rule, RuleSet, Sample};
 use crate::mesh::{HalfEdgeId, Mesh, Node, Value};
 use glam::DVec2;
 use std::fmt::Write;
@@ -16,39 +16,55 @@ const BLUE: &str = "#1f5fbf";
 const GREY: &str = "#777";
 const STYLE: &str = "line{stroke:#222;stroke-width:1.6}circle{fill:#222}text{font:13px sans-serif;fill:#222}";
 
-/// `rule` of `set` as an SVG document. Where no drawing can be made of the pattern, or the action fails on it, the
-/// document says why.
-pub fn rule_svg(set: &RuleSet, rule: &Rule) -> String {
-    let sample = match Sample::new(set, rule) {
-        Ok(sample) => sample,
-        Err(reason) => return note(&rule.name, &format!("no drawing: {reason}")),
-    };
-    let result = sample.apply(set);
-    let bounds = bounds(&sample.mesh, result.as_ref().ok());
-    let size = (bounds[1] - bounds[0]) * SCALE;
+/// `rule` of `set` as an SVG document: on a mesh made from its pattern. Where none can be made, or the action fails on
+/// it, the meshes of `case` are drawn instead, before and after all rules; without a case the document says why.
+pub fn rule_svg(set: &RuleSet, rule: &Rule, case: Option<&Case>) -> String {
+    let sample = Sample::new(set, rule);
+    let result = sample.as_ref().map(|sample| sample.apply(set));
+    if !matches!(result, Ok(Ok(_)))
+        && let Some(Ok([before, after])) = case.map(Case::before_and_after)
+    {
+        let [low, high] = bounds(&before, Some(&after));
+        return pair(&rule.name, &before, None, &Ok(after), SCALE / (high - low).max_element().max(1e-9));
+    }
+    match (&sample, result) {
+        (Ok(sample), Ok(result)) => {
+            let result = result.map_err(|error| error.to_string());
+            pair(&rule.name, &sample.mesh, Some(sample), &result, SCALE)
+        }
+        (Err(reason), _) | (_, Err(reason)) => note(&rule.name, &format!("no drawing: {reason}")),
+    }
+}
+
+/// Two meshes side by side, or one and why there is no other.
+fn pair(
+    title: &str,
+    before: &Mesh,
+    sample: Option<&Sample>,
+    after: &Result<Mesh, String>,
+    scale: f64,
+) -> String {
+    let bounds = bounds(before, after.as_ref().ok());
+    let size = (bounds[1] - bounds[0]) * scale;
     let right = MARGIN + size.x + GAP;
-    let mut page = Page { svg: String::new(), bounds, left: MARGIN };
-    page.mesh(&sample.mesh, &sample.mesh);
-    page.names(&sample);
+    let mut page = Page { svg: String::new(), bounds, left: MARGIN, scale };
+    page.mesh(before, before);
+    if let Some(sample) = sample {
+        page.names(sample);
+    }
     let middle = 30.0 + MARGIN + size.y / 2.0;
     page.arrow(right - 0.68 * GAP, right - 0.32 * GAP, middle);
     page.left = right;
-    match &result {
-        Ok(after) => page.mesh(after, &sample.mesh),
+    match after {
+        Ok(after) => page.mesh(after, before),
         Err(error) => {
-            let text = error.to_string();
-            let line =
-                text.lines().find(|line| line.starts_with("error: ")).or(text.lines().next()).unwrap_or("");
-            page.text(
-                DVec2::new(right, middle),
-                &format!("the action needs more: {}", line.trim_start_matches("error: ")),
-                GREY,
-                "start",
-            );
+            let line = error.lines().find_map(|line| line.strip_prefix("error: ")).unwrap_or(error);
+            let text = format!("the action needs more: {line}");
+            page.text(DVec2::new(right, middle), &text, GREY, "start");
         }
     }
-    let width = if result.is_ok() { right + size.x + MARGIN } else { right + 620.0 };
-    document(&rule.name, width, size.y + 2.0 * MARGIN + 30.0, &page.svg)
+    let width = if after.is_ok() { right + size.x + MARGIN } else { right + 620.0 };
+    document(title, width, size.y + 2.0 * MARGIN + 30.0, &page.svg)
 }
 
 fn document(title: &str, width: f64, height: f64, body: &str) -> String {
@@ -97,13 +113,15 @@ struct Page {
     svg: String,
     bounds: [DVec2; 2],
     left: f64,
+    /// Pixels per unit.
+    scale: f64,
 }
 
 impl Page {
     fn place(&self, p: DVec2) -> DVec2 {
         DVec2::new(
-            self.left + (p.x - self.bounds[0].x) * SCALE,
-            30.0 + MARGIN + (self.bounds[1].y - p.y) * SCALE,
+            self.left + (p.x - self.bounds[0].x) * self.scale,
+            30.0 + MARGIN + (self.bounds[1].y - p.y) * self.scale,
         )
     }
 

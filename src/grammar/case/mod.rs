@@ -76,11 +76,19 @@ impl Case {
         read::read(&name, &text)
     }
 
-    /// The mesh before the rules.
+    /// The mesh before the rules, and what they make of it.
     ///
     /// # Errors
-    /// None for a case that was read; kept so that this is no reason to panic.
-    pub fn mesh(&self) -> Result<Mesh, CaseError> {
+    /// The rules fail.
+    pub fn before_and_after(&self) -> Result<[Mesh; 2], CaseError> {
+        let before = self.mesh()?;
+        let mut after = before.clone();
+        let options = RunOptions { parameters: self.parameters.clone(), ..RunOptions::default() };
+        run(&self.rules, &mut after, &options)?;
+        Ok([before, after])
+    }
+
+    fn mesh(&self) -> Result<Mesh, CaseError> {
         self.before.mesh().map_err(CaseError::Different)
     }
 
