@@ -1,12 +1,14 @@
 //! Features along curves that do not follow the edges, on flat sheets: the figures of a study
 //! (docs/linear-features.md, section 6) are the bar.
 
+mod common;
+
 use glam::DVec3;
 use std::fmt::Write;
 use welt::feature::{self, Options, Report, Request};
 use welt::job::Job;
 use welt::mark::{Selection, Selector};
-use welt::mesh::{Mesh, Polygons};
+use welt::mesh::Mesh;
 use welt::subdivision::{limit_positions, refine};
 
 const SIDE: u32 = 12;
@@ -16,16 +18,7 @@ const WIDTH: f64 = 1.1934 * 0.1 + 0.062_85;
 
 /// A flat sheet of 12 x 12 unit cells.
 fn sheet() -> Mesh {
-    let count = SIDE + 1;
-    let positions =
-        (0..count * count).map(|k| DVec3::new(f64::from(k % count), f64::from(k / count), 0.0)).collect();
-    let mut polygons = Polygons { positions, ..Polygons::default() };
-    for (i, j) in (0..SIDE).flat_map(|j| (0..SIDE).map(move |i| (i, j))) {
-        let at = |i: u32, j: u32| j * count + i;
-        polygons.face_sizes.push(4);
-        polygons.face_vertices.extend([at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)]);
-    }
-    Mesh::from_polygons(&polygons).expect("a sheet")
+    common::flat_sheet(SIDE)
 }
 
 fn text(course: &str, points: &[DVec3], closed: bool) -> String {

@@ -3,28 +3,21 @@
 //! The limit surface is looked at through five levels of refinement with every vertex moved to its limit, so that
 //! nothing here depends on how the library measures.
 
+mod common;
+
 use glam::DVec3;
 use std::path::PathBuf;
 use welt::feature::{self, FeatureError, Options, Profile, Report, Request};
 use welt::job::Job;
 use welt::mark::{Selection, Selector};
-use welt::mesh::{Mesh, Polygons};
+use welt::mesh::Mesh;
 use welt::subdivision::{limit_positions, refine};
 
 const SIDE: u32 = 9;
 
 /// A flat sheet of 9 x 9 unit cells; vertex (i, j) is number 10 j + i.
 fn sheet() -> Mesh {
-    let count = SIDE + 1;
-    let positions =
-        (0..count * count).map(|k| DVec3::new(f64::from(k % count), f64::from(k / count), 0.0)).collect();
-    let mut polygons = Polygons { positions, ..Polygons::default() };
-    for (i, j) in (0..SIDE).flat_map(|j| (0..SIDE).map(move |i| (i, j))) {
-        let at = |i: u32, j: u32| j * count + i;
-        polygons.face_sizes.push(4);
-        polygons.face_vertices.extend([at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)]);
-    }
-    Mesh::from_polygons(&polygons).expect("a sheet")
+    common::flat_sheet(SIDE)
 }
 
 fn try_apply(

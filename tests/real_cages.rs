@@ -51,7 +51,7 @@ fn groove(mesh: &mut Mesh, ring: &Ring, depth: &str, method: Method, deviation: 
     feature::apply(mesh, &ring.selection, &request, &options, &Job::new()).expect("a ring takes a groove")
 }
 
-/// Chairs whose edges change their lengths slowly: the width holds to 3 % at all but 5 % of the places. On the others
+/// Chairs whose edges change their lengths slowly: the width holds to 3 % at all but 3 % of the places. On the others
 /// some edges are too short for 30 % of their control length on the limit surface; the report lists them.
 const EVEN_CHAIRS: [&str; 4] =
     ["bs0_chair_cage.obj", "bs0_couch2.obj", "bsby_leaf_chair_cage.obj", "kl_mid-century-chair_cage.obj"];
@@ -74,13 +74,14 @@ fn ring_step(otherwise: usize) -> usize {
 fn every_ring_takes_a_groove() {
     let Some(data) = common::shared_data() else { return };
     // All 1,735 rings with WELT_RING_STEP=1.
-    let step = ring_step(4);
+    let thinned = ring_step(4);
     let (mut count, mut narrow, mut shallow) = (0, Vec::new(), Vec::new());
     let (mut places, mut off) = (0, 0);
     for folder in ["upholstery", "product"] {
         for (name, mesh) in common::clean_cages(&data, folder) {
             let (places_before, off_before) = (places, off);
-            for ring in rings(&mesh).into_iter().step_by(step) {
+            let is_even = EVEN_CHAIRS.contains(&name.as_str());
+            for ring in rings(&mesh).into_iter().step_by(if is_even { 1 } else { thinned }) {
                 let mut result = mesh.clone();
                 let report = groove(&mut result, &ring, "10%", Method::Solve, false);
                 let marks = ring.selection.marks.len();
@@ -99,8 +100,8 @@ fn every_ring_takes_a_groove() {
             }
             let (off_here, places_here) = (off - off_before, places - places_before);
             println!("{name}: width off by more than 3 % at {off_here} of {places_here} places");
-            if EVEN_CHAIRS.contains(&name.as_str()) {
-                assert!(20 * off_here < places_here, "{name}: {off_here} of {places_here} places are off");
+            if is_even {
+                assert!(33 * off_here < places_here, "{name}: {off_here} of {places_here} places are off");
             }
         }
     }

@@ -130,10 +130,8 @@ impl Run<'_> {
         if self.features.is_empty() {
             return Ok(());
         }
-        let mut marks = Vec::with_capacity(self.marks.len());
-        for (i, (mark, values)) in self.marks.iter().zip(&self.asked).enumerate() {
-            marks.push((mark.half_edge, self.cuts(mesh, i, values)?.len()));
-        }
+        let marks: Vec<_> =
+            self.marks.iter().enumerate().map(|(i, mark)| (mark.half_edge, self.line_count(i))).collect();
         let (marks, report) = parity::route(mesh, &marks, self.options.parity, job)?;
         self.edges.extend(marks.iter().map(|m| (mesh.source(m.half_edge).0, mesh.target(m.half_edge).0)));
         self.parity = marks;

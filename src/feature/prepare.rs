@@ -38,6 +38,8 @@ pub(super) struct Run<'a> {
     pub(super) feature_of: Vec<usize>,
     /// Parameters asked for per mark, in model units; empty without features.
     pub(super) asked: Vec<Vec<f64>>,
+    /// The straight band that these make at each mark.
+    sections: Vec<Section>,
     /// Vertices inside of closed loops and their features.
     pub(super) inside: Vec<(VertexId, usize)>,
     /// Curves on the surface, and the curve that each mark lies on.
@@ -81,6 +83,7 @@ impl<'a> Run<'a> {
             parity_report: None,
             feature_of: Vec::new(),
             asked: Vec::new(),
+            sections: Vec::new(),
             inside: Vec::new(),
             tracks: Vec::new(),
             track_of: vec![None; selection.marks.len()],
@@ -153,7 +156,9 @@ impl<'a> Run<'a> {
             let length = mesh.edge_length(mark.half_edge);
             // A share of an edge that is crossed at a slant is a share of its extent across the feature.
             let breadth = mark.breadth.unwrap_or_else(|| length * crossing_sine(mesh, mark));
-            self.asked.push(feature.values(length, breadth));
+            let values = feature.values(length, breadth);
+            self.sections.push(Section::new(&feature.profile, &values));
+            self.asked.push(values);
         }
         // Refuse widths that do not fit before anything is done.
         for (mark, values) in self.asked.iter().enumerate() {
@@ -162,15 +167,20 @@ impl<'a> Run<'a> {
         Ok(())
     }
 
-    /// Where the lines of mark number `mark` lie on its edge, for these values of the feature's parameters.
+    /// Where the lines of mark number `mark` lie on its edge, for these values of the feature's parameters. The heights
+    /// are those asked for: a correction of them changes the shape of the section, and its width, very little.
     pub(super) fn cuts(
         &self,
         mesh: &Mesh,
         mark: usize,
         values: &[f64],
     ) -> Result<Vec<f64>, super::WidthError> {
-        let profile = &self.features[self.feature_of[mark]].profile;
-        let width = profile.width().map(|p| values[p]);
-        cuts(mesh, &self.marks[mark], &Section::new(profile, values), width)
+        let width = self.features[self.feature_of[mark]].profile.width().map(|p| values[p]);
+        cuts(mesh, &self.marks[mark], &self.sections[mark], width)
+    }
+
+    /// Number of lines that cross the edge of mark number `mark`.
+    pub(super) fn line_count(&self, mark: usize) -> usize {
+        self.sections[mark].lines.len()
     }
 }

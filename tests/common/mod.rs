@@ -66,3 +66,19 @@ pub fn rule_sets() -> Vec<PathBuf> {
     };
     files.iter().map(|(path, _)| path.clone()).filter(|path| !is_part(path)).collect()
 }
+
+/// A flat sheet of `side` x `side` unit cells; vertex (i, j) lies at (i, j, 0) and is number (side + 1) j + i.
+#[allow(dead_code, reason = "not every test that shares this module uses sheets")]
+pub fn flat_sheet(side: u32) -> welt::mesh::Mesh {
+    let count = side + 1;
+    let positions = (0..count * count)
+        .map(|k| glam::DVec3::new(f64::from(k % count), f64::from(k / count), 0.0))
+        .collect();
+    let mut polygons = welt::mesh::Polygons { positions, ..welt::mesh::Polygons::default() };
+    for (i, j) in (0..side).flat_map(|j| (0..side).map(move |i| (i, j))) {
+        let at = |i: u32, j: u32| j * count + i;
+        polygons.face_sizes.push(4);
+        polygons.face_vertices.extend([at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)]);
+    }
+    welt::mesh::Mesh::from_polygons(&polygons).expect("a sheet")
+}

@@ -47,10 +47,10 @@ pub(in super::super) fn centre(
     track_of: impl Fn(usize) -> Option<usize>,
     middle: impl Fn(usize) -> Option<usize>,
 ) {
-    let sections = sections(mesh, lines, track_of, middle);
-    if sections.is_empty() {
+    if tracks.is_empty() {
         return;
     }
+    let sections = sections(mesh, lines, track_of, middle);
     let section_of: FxHashMap<VertexId, usize> = sections
         .iter()
         .enumerate()
