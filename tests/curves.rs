@@ -165,6 +165,17 @@ fn curves_that_cannot_be_followed_are_refused() {
     assert!(error(&["polyline:1,5.4,0;9,5.4,0#blue"]).contains("#blue"));
     let twice = error(&["polyline:1,5.4,0;9,5.4,0", "ring:67,80"]);
     assert!(twice.contains("edge 67,80 is crossed twice") || twice.contains("is crossed twice"), "{twice}");
+    // Rules alone would pass over the curve: that is said, and the marks beside it are left alone.
+    let mut mesh = sheet();
+    let selectors = ["polyline:1,5.4,0;9,5.4,0", "ring:6,7"].map(|m| Selector::parse(m).expect("a selector"));
+    let selection = Selection::resolve(&mesh, &selectors).expect("marks");
+    let rules = feature::linear_rules().expect("rules");
+    let request = Request::rules::<&str>(rules, &[]).expect("a request");
+    let refused = feature::apply(&mut mesh, &selection, &request, &Options::default(), &Job::new());
+    assert_eq!(
+        refused.expect_err("refused").to_string(),
+        "curve 0: rules alone follow no curve; ask for a feature"
+    );
     for bad in ["polyline:0,0,0", "spline:0,0,0;0,0,0", "polyline:0,0,0;1,nan,0"] {
         assert!(Selector::parse(bad).is_err(), "{bad}");
     }

@@ -61,7 +61,11 @@ impl<'a> Run<'a> {
         request: &'a Request,
         options: &'a Options,
     ) -> Result<Self, FeatureError> {
-        if selection.marks.is_empty() && (selection.curves.is_empty() || request.features.is_empty()) {
+        if request.features.is_empty() && !selection.curves.is_empty() {
+            let problem = "rules alone follow no curve; ask for a feature".to_owned();
+            return Err(FeatureError::Curve { curve: 0, problem });
+        }
+        if selection.marks.is_empty() && selection.curves.is_empty() {
             return Err(FeatureError::NoMarks);
         }
         if let Some(mark) = selection.marks.iter().position(|mark| !mesh.has_half_edge(mark.half_edge)) {
@@ -105,7 +109,12 @@ impl<'a> Run<'a> {
         let mut crossed: FxHashSet<u32> = self.marks.iter().map(|mark| mark.half_edge.edge()).collect();
         for (index, curve) in self.selection.curves.iter().enumerate() {
             let Some(feature) = feature_of(&mut self.features, &curve.kind) else {
-                let problem = format!("no feature has the name of its kind, #{}", curve.kind);
+                let known: Vec<&str> = self.features.iter().map(|feature| feature.kind.as_str()).collect();
+                let problem = format!(
+                    "no feature has the name of its kind, #{}; there are {}",
+                    curve.kind,
+                    known.join(", ")
+                );
                 return Err(FeatureError::Curve { curve: index, problem });
             };
             let feature = &self.features[feature];

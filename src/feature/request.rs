@@ -281,11 +281,11 @@ pub enum FeatureError {
         ends: Vec<(u32, u32)>,
     },
     /// A curve that no feature can follow.
-    #[error("curve {curve}: {problem}; give points on or near the limit surface, in model units")]
+    #[error("curve {curve}: {problem}")]
     Curve {
         /// The curve, counted from 0 in the order of the selection.
         curve: usize,
-        /// What is wrong with it.
+        /// What is wrong with it, and the remedy.
         problem: String,
     },
     /// An edge that curves or marks cross twice.

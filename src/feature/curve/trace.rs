@@ -36,10 +36,13 @@ pub(in super::super) fn trace(
 ) -> Result<Traced, FeatureError> {
     let error = |problem: &str| FeatureError::Curve { curve: index, problem: problem.into() };
     let faces = near(mesh, curve);
-    let edge = mean_edge(mesh, &faces).ok_or_else(|| error("it is far from the surface"))?;
+    let edge = mean_edge(mesh, &faces).ok_or_else(|| {
+        error("it is far from the surface; give points on or near the limit surface, in model units")
+    })?;
     let surface = LimitSurface::around(mesh, &faces);
-    let (track, feet) =
-        Track::project(&surface, curve, edge).ok_or_else(|| error("it does not lie along the surface"))?;
+    let (track, feet) = Track::project(&surface, curve, edge).ok_or_else(|| {
+        error("it does not lie along the surface; give points on or near the limit surface, in model units")
+    })?;
 
     let mut crossed: Vec<FaceId> = feet.iter().map(|foot| foot.face).collect();
     crossed.sort_unstable();
@@ -71,7 +74,7 @@ pub(in super::super) fn trace(
         marks.push(Mark { half_edge: h, t, kind: curve.kind.clone(), breadth: Some(breadth) });
     }
     if marks.is_empty() {
-        return Err(error("it crosses no edge"));
+        return Err(error("it crosses no edge; it must reach from face to face"));
     }
     Ok(Traced { marks, moved, track })
 }
