@@ -50,14 +50,25 @@ fn middle() -> f64 {
 
 /// Reads the marks and curves of `path`; entries without a kind get `kind`.
 pub(super) fn read(mesh: &Mesh, path: &Path, kind: &str) -> Result<(Vec<Mark>, Vec<Curve>), MarkError> {
-    let error = |problem: String| MarkError::File { path: path.display().to_string(), problem };
+    let name = path.display().to_string();
     let mut text = Vec::new();
     let read = std::fs::File::open(path).and_then(|file| file.take(MAX_BYTES + 1).read_to_end(&mut text));
-    let length = read.map_err(|e| error(e.to_string()))?;
-    if length as u64 > MAX_BYTES {
+    read.map_err(|e| MarkError::File { path: name.clone(), problem: e.to_string() })?;
+    parse(mesh, &name, &text, kind)
+}
+
+/// [`read`] for the content of a file. `name` stands for the file in messages.
+pub(super) fn parse(
+    mesh: &Mesh,
+    name: &str,
+    text: &[u8],
+    kind: &str,
+) -> Result<(Vec<Mark>, Vec<Curve>), MarkError> {
+    let error = |problem: String| MarkError::File { path: name.to_owned(), problem };
+    if text.len() as u64 > MAX_BYTES {
         return Err(error(format!("the file is larger than {} MiB; is it a mark file?", MAX_BYTES >> 20)));
     }
-    let file: File = serde_json::from_slice(&text).map_err(|e| {
+    let file: File = serde_json::from_slice(text).map_err(|e| {
         error(format!(
             "{e}; a mark file is {{\"marks\": [{{\"edge\": [0, 1], \"t\": 0.5, \"kind\": \"red\"}}]}}"
         ))

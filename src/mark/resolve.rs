@@ -1,7 +1,7 @@
 //! From selectors to marks on a mesh.
 
 use super::selector::{Selector, Shape};
-use super::{Curve, Mark, file, path};
+use super::{Curve, DEFAULT_KIND, Mark, file, path};
 use crate::mesh::{FaceId, HalfEdgeId, Mesh, VertexId};
 use rustc_hash::{FxHashMap, FxHashSet};
 use serde::Serialize;
@@ -116,17 +116,34 @@ fn joined(vertex: u32, neighbours: &[u32]) -> String {
 }
 
 impl Selection {
+    /// The marks and curves of a mark file with the content `text`; see [`Shape::File`]. Entries without a kind get
+    /// the default kind. `name` stands for the file in messages.
+    ///
+    /// # Errors
+    /// What is wrong with the text, and what does not fit the mesh.
+    pub fn from_json(mesh: &Mesh, name: &str, text: &[u8]) -> Result<Self, MarkError> {
+        let (marks, curves) = file::parse(mesh, name, text, DEFAULT_KIND)?;
+        Self::merge(mesh, std::iter::once(Ok(Self { marks, curves, ends: Vec::new() })))
+    }
+
     /// The marks of `selectors` on `mesh`, in order.
     ///
     /// # Errors
     /// An element that does not exist, an edge marked in two ways, a path that does not exist, a bad mark file.
     pub fn resolve(mesh: &Mesh, selectors: &[Selector]) -> Result<Self, MarkError> {
+        let found = selectors.iter().map(|selector| {
+            let mut found = Self::default();
+            selector.collect(mesh, &mut found).map(|()| found)
+        });
+        Self::merge(mesh, found)
+    }
+
+    fn merge(mesh: &Mesh, parts: impl Iterator<Item = Result<Self, MarkError>>) -> Result<Self, MarkError> {
         let mut selection = Self::default();
         let mut at: FxHashMap<u32, usize> = FxHashMap::default();
         let mut ends: FxHashSet<StripEnd> = FxHashSet::default();
-        for selector in selectors {
-            let mut found = Self::default();
-            selector.collect(mesh, &mut found)?;
+        for found in parts {
+            let mut found = found?;
             for mark in found.marks {
                 match at.get(&mark.half_edge.edge()) {
                     None => {
