@@ -559,6 +559,16 @@ int32_t welt_mesh_create(const uint32_t *face_sizes,
 WELT_API void welt_mesh_free(welt_mesh *mesh);
 
 /*
+ Copies a mesh, with all that it holds: options, sharpness, holes, marks, groups and texture coordinates.
+
+ mesh: must not be NULL.
+ copy: receives the handle; free it with welt_mesh_free.
+
+ Selections that were made on the mesh serve the copy too. Since: 0.1.
+ */
+WELT_API int32_t welt_mesh_copy(const welt_mesh *mesh, welt_mesh **copy, welt_error **error);
+
+/*
  Number of vertices; 0 where mesh is NULL or poisoned. Since: 0.1.
  */
 WELT_API size_t welt_mesh_vertex_count(const welt_mesh *mesh);

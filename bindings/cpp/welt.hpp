@@ -481,6 +481,9 @@ public:
                                          face_vertices.size(), positions.first(), positions.count(),
                                          positions.stride())) {}
 
+    // With all that the mesh holds. Handles are moved, so that a copy is never made by mistake.
+    Mesh copy() const { return Mesh(detail::make<welt_mesh>(welt_mesh_copy, get())); }
+
     // Files. What was ignored and repaired stands in the report, for those who ask.
     static Mesh import_file(std::string_view path, ImportOptions const& options = {}, Report* report = nullptr) {
         return imported(report, welt_mesh_import_file, path.data(), path.size(), &options);
