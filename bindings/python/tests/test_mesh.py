@@ -1,7 +1,6 @@
 """Meshes, marks, features and surfaces, with numpy and without."""
 
 import gc
-import json
 import math
 import os
 import tempfile
@@ -10,7 +9,8 @@ import unittest
 import welt
 from welt import arrays
 
-CHAIR = os.path.join(os.path.dirname(__file__), "../../../tests/data/models/chair.obj")
+CHAIR = os.path.join(os.path.dirname(__file__), "../../../tests/data/models/leaf_chair.obj")
+PARAMETER = os.path.join(os.path.dirname(__file__), "../../../tests/cpp/data/parameter.rules")
 CUBE_POINTS = [(x, y, z) for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)]
 CUBE_FACES = [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)]
 
@@ -173,20 +173,24 @@ class Files(unittest.TestCase):
 class Features(unittest.TestCase):
     def test_a_groove_is_as_wide_and_as_deep_as_asked(self):
         mesh = sheet(8)
-        before = mesh.freeze()
-        selection = mesh.select("ring:4,13")
+        selection = mesh.select("ring:4,5")
         ends, places = selection.edges(mesh)
-        self.assertEqual((len(selection), ends.tolist()[0], places.tolist()), (9, [3, 4], [0.5] * 9) if False else (len(selection), ends.tolist()[0], [0.5] * len(selection)))
+        self.assertEqual({tuple(sorted(edge)) for edge in ends.tolist()}, {(y * 9 + 4, y * 9 + 5) for y in range(9)})
+        self.assertEqual(places.tolist(), [0.5] * 9)
         report = mesh.apply(selection, "groove", {"width": 0.4, "depth": 0.1})
-        self.assertIn("dimensions", report)
-        lowest = min(p[2] for p in mesh.limit_positions().tolist())
-        self.assertAlmostEqual(lowest, -0.1, 3)
-        self.assertGreater(mesh.deviation(welt_from(before)).largest, 0.09)
+        self.assertEqual((report["before"]["faces"], report["after"]["faces"]), (64, mesh.face_count))
+        self.assertAlmostEqual(min(p[2] for p in mesh.limit_positions().tolist()), -0.1, 6)
+        # Half depth is half a width away from the mark, which runs along x = 4.5.
+        for x in (4.5 - 0.2, 4.5 + 0.2):
+            hit = mesh.freeze().first_hits([(x, 4.0, 5.0, 0, 0, -1)])[0]
+            height = hit["position"][2] if arrays.numpy else hit.position[2]
+            self.assertAlmostEqual(float(height), -0.05, 3)
+        self.assertAlmostEqual(mesh.deviation(sheet(8)).largest, 0.1, 2)
 
     def test_wrong_wishes_change_nothing(self):
         mesh = sheet(4)
         before = mesh.positions.tolist()
-        selection = mesh.select("ring:2,7")
+        selection = mesh.select("ring:2,3")
         for settings, what in (({"width": 5}, "width"), ({"wide": 1}, "wide"), ({"width": math.nan}, "width"), ("depth", "depth")):
             with self.subTest(settings=settings), self.assertRaisesRegex(welt.ArgumentError, what):
                 mesh.apply(selection, "groove", settings)
@@ -199,7 +203,7 @@ class Features(unittest.TestCase):
     def test_a_width_too_large_names_the_edge(self):
         mesh = sheet(4)
         with self.assertRaises(welt.ArgumentError) as caught:
-            mesh.apply(mesh.select("ring:2,7"), "groove", {"width": 5})
+            mesh.apply(mesh.select("ring:2,3"), "groove", {"width": 5})
         self.assertEqual(caught.exception.places[0].kind, "edge")
         self.assertEqual(len(caught.exception.places[0].ids), 2)
 
@@ -215,12 +219,18 @@ class Features(unittest.TestCase):
             with self.assertRaises(welt.ParseError) as caught:
                 welt.Rules(path)
             self.assertEqual((caught.exception.places[0].file, caught.exception.places[0].line), (path, 1))
-        rules = welt.Rules.linear()
-        self.assertIsInstance(rules.parameters, list)
+        rules = welt.Rules(PARAMETER)
+        self.assertEqual(rules.parameters[-1], welt.Parameter("height", "length", "How far up", 2.0, 0.5, 10.0))
+        self.assertEqual(rules.parameters[:-1], welt.Rules.linear().parameters)
+
+    def test_marks_that_no_rule_handles(self):
+        # The rules of linear features do nothing without the cuts that the feature stage prepares.
         mesh = sheet(4)
-        report = mesh.apply(mesh.select("ring:2,7"), rules)
-        self.assertIsInstance(json.dumps(report), str)
-        self.assertGreater(mesh.face_count, 16)
+        report = mesh.apply(mesh.select("ring:2,3"), welt.Rules.linear())
+        self.assertEqual(report["after"]["faces"], 16)
+        with self.assertRaises(welt.RuleError) as caught:
+            mesh.apply(mesh.select("ring:2,3"), welt.Rules.linear(), strict=True)
+        self.assertEqual({place.kind for place in caught.exception.places}, {"edge"})
 
     def test_displace_and_fit(self):
         mesh = sheet(4)
@@ -230,10 +240,6 @@ class Features(unittest.TestCase):
         report = mesh.fit(surface, [12])
         self.assertIsInstance(report, dict)
         self.assertAlmostEqual(mesh.limit_positions()[12, 2], 0.0, 9)
-
-
-def welt_from(_surface):
-    return sheet(8)
 
 
 class Surfaces(unittest.TestCase):

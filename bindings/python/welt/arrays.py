@@ -29,7 +29,7 @@ def _flat(values: Any) -> Iterable[Any]:
     if isinstance(values, memoryview):
         values = values.tolist()
     for value in values:
-        if hasattr(value, "__iter__"):
+        if hasattr(value, "__iter__") and not isinstance(value, (str, bytes)):
             yield from _flat(value)
         else:
             yield value
