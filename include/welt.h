@@ -901,6 +901,23 @@ int32_t welt_refinement_face_vertices(const welt_refinement *refinement,
                                       welt_error **error);
 
 /*
+ Gives a level as a mesh: another control mesh of the same surface. It has the sharpness that is left and the options of
+ subdivision; faces without a limit surface are holes.
+
+ refinement: must not be NULL.
+ level: 0 to the depth.
+ mesh: receives the handle; free it with welt_mesh_free.
+
+ Its vertices and faces are numbered as those of the level, so that welt_mesh_limit_positions of it moves the level onto
+ the limit surface. Since: 0.1.
+ */
+WELT_API
+int32_t welt_refinement_mesh(const welt_refinement *refinement,
+                             uint32_t level,
+                             welt_mesh **mesh,
+                             welt_error **error);
+
+/*
  What the vertices of a level stand for on the level before.
 
  refinement: must not be NULL.

@@ -258,6 +258,8 @@ struct BatchOptions : welt_batch_options {
 
 // --- Surfaces ----------------------------------------------------------------------------------------------------------
 
+class Mesh;
+
 // One number or view per level; level 0 is the mesh.
 class Refinement : public detail::Handle<welt_refinement, welt_refinement_free> {
 public:
@@ -277,6 +279,9 @@ public:
         detail::call(welt_refinement_face_vertices, get(), level, &first);
         return {first, welt_refinement_face_vertex_count(get(), level)};
     }
+
+    // Another control mesh of the same surface, numbered as the level.
+    Mesh mesh(std::uint32_t level) const;
 
     struct VertexParents {
         std::vector<std::uint32_t> kinds, elements;
@@ -425,8 +430,6 @@ private:
 };
 
 // --- Marks and rules ---------------------------------------------------------------------------------------------------
-
-class Mesh;
 
 class Selection : public detail::Handle<welt_selection, welt_selection_free> {
 public:
@@ -650,6 +653,10 @@ private:
         });
     }
 };
+
+inline Mesh Refinement::mesh(std::uint32_t level) const {
+    return Mesh(detail::make<welt_mesh>(welt_refinement_mesh, get(), level));
+}
 
 inline Selection::Edges Selection::edges(Mesh const& mesh) const {
     Edges all{std::vector<std::uint32_t>(2 * count()), std::vector<double>(count())};

@@ -111,6 +111,12 @@ class Meshes(unittest.TestCase):
         self.assertEqual(elements.tolist(), [*range(8), *range(12), *range(6)])
         faces, corners = refined.face_parents(1)
         self.assertEqual(sorted(zip(faces.tolist(), corners.tolist())), [(f, c) for f in range(6) for c in range(4)])
+        # The limit surface does not depend on the level that it is reached from.
+        fine = refined.mesh(1)
+        self.assertEqual(fine.face_count, 24)
+        for coarse, point in zip(cube().limit_positions().tolist(), fine.limit_positions().tolist()):
+            for i in range(3):
+                self.assertAlmostEqual(coarse[i], point[i], 14)
         # The face point of a cube's side is its middle (Catmull and Clark 1978).
         self.assertEqual(sorted(map(sum, refined.positions(1).tolist()[20:])), [-1, -1, -1, 1, 1, 1])
 

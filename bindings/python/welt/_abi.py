@@ -165,6 +165,8 @@ int32_t welt_refinement_positions(const welt_refinement *refinement, uint32_t le
     welt_error **error);
 int32_t welt_refinement_face_vertices(const welt_refinement *refinement, uint32_t level, const uint32_t
     **vertices, welt_error **error);
+int32_t welt_refinement_mesh(const welt_refinement *refinement, uint32_t level, welt_mesh **mesh,
+    welt_error **error);
 int32_t welt_refinement_vertex_parents(const welt_refinement *refinement, uint32_t level, uint32_t *kinds,
     uint32_t *elements, size_t capacity, welt_error **error);
 int32_t welt_refinement_face_parents(const welt_refinement *refinement, uint32_t level, uint32_t *faces,

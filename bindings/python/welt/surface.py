@@ -4,14 +4,17 @@ from __future__ import annotations
 
 import ctypes
 import math
-from typing import Any, Optional, Tuple
+from typing import TYPE_CHECKING, Any, Optional, Tuple
 
 from . import _options as options
 from . import arrays
 from ._abi import CONSTANTS, SurfacePoint
-from ._handle import Handle, call
+from ._handle import Handle, call, make
 from .arrays import ArrayLike
 from .errors import BufferTooSmallError
+
+if TYPE_CHECKING:
+    from .mesh import Mesh
 
 #: Vectors per point for derivatives up to an order: position; du, dv; duu, duv, dvv.
 BATCH_WIDTHS = {0: 1, 1: 3, 2: 6}
@@ -56,6 +59,15 @@ class Refinement(Handle):
         call(f"welt_refinement_{what}", self, level, ctypes.byref(first))
         memory = arrays.memory(first, kind, math.prod(shape), owner)
         return arrays.shaped(memory, kind, shape, readonly=True)
+
+    def mesh(self, level: int) -> Mesh:
+        """A level as a mesh: another control mesh of the same surface, numbered as the level. Its `limit_positions()` are the
+        level moved onto the limit surface."""
+        from .mesh import Mesh
+
+        result = Mesh._adopt(make("welt_refinement_mesh", self, options.whole(level, "level")))
+        result.report = {}
+        return result
 
     def vertex_parents(self, level: int) -> Tuple[Any, Any]:
         """What the vertices of a level, from 1, stand for on the level before: (n,) kinds (0 vertex, 1 edge, 2 face) and (n,)
