@@ -1,33 +1,19 @@
-"""Puts the shared library into the wheel: the file that WELT_LIBRARY names, or one that cargo builds."""
+"""Puts the shared library into the wheel."""
 
-import os
 import pathlib
 import shutil
-import subprocess
 import sys
 
 from setuptools import Distribution, setup
 from setuptools.command.build_py import build_py
 
-NAME = {"win32": "welt.dll", "darwin": "libwelt.dylib"}.get(sys.platform, "libwelt.so")
-REPOSITORY = pathlib.Path(__file__).resolve().parents[2]
+try:
+    from setuptools.command.bdist_wheel import bdist_wheel
+except ImportError:
+    from wheel.bdist_wheel import bdist_wheel
 
-
-def library() -> pathlib.Path:
-    named = os.environ.get("WELT_LIBRARY")
-    if named:
-        path = pathlib.Path(named)
-        path = path / NAME if path.is_dir() else path
-        if not path.exists():
-            raise SystemExit(f"WELT_LIBRARY names {path}, which does not exist")
-        return path
-    if not (REPOSITORY / "Cargo.toml").exists():
-        raise SystemExit("the sources of the library are not here: set WELT_LIBRARY to the file of the library")
-    if not shutil.which("cargo"):
-        raise SystemExit("cargo is needed to build the library (https://rustup.rs), or set WELT_LIBRARY to its file")
-    subprocess.run(["cargo", "build", "--release", "--lib", "--no-default-features"], cwd=REPOSITORY, check=True)
-    target = pathlib.Path(os.environ.get("CARGO_TARGET_DIR", REPOSITORY / "target"))
-    return target / "release" / NAME
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
+from library_file import NAME, library  # noqa: E402
 
 
 class Build(build_py):
@@ -43,18 +29,10 @@ class WithLibrary(Distribution):
         return True
 
 
-def tag():
-    """The wheel serves every Python 3, since ctypes loads the library."""
-    try:
-        from setuptools.command.bdist_wheel import bdist_wheel
-    except ImportError:
-        from wheel.bdist_wheel import bdist_wheel
-
-    class Wheel(bdist_wheel):
-        def get_tag(self):
-            return ("py3", "none", super().get_tag()[2])
-
-    return Wheel
+class Wheel(bdist_wheel):
+    def get_tag(self):
+        """The wheel serves every Python 3, since ctypes loads the library."""
+        return ("py3", "none", super().get_tag()[2])
 
 
-setup(distclass=WithLibrary, cmdclass={"build_py": Build, "bdist_wheel": tag()})
+setup(distclass=WithLibrary, cmdclass={"build_py": Build, "bdist_wheel": Wheel})

@@ -78,8 +78,10 @@ class ImportCage(Command):
 
     def read(self, document, path):
         from .cage import make_cage
+        from .limit import make_limit
 
         obj = make_cage(document, path)
+        make_limit(obj)
         document.recompute()
         FreeCADGui.SendMsgToActiveView("ViewFit")
         return obj

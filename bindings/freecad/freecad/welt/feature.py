@@ -29,7 +29,7 @@ class Feature(Proxy):
         add(obj, "App::PropertyLinkList", "Marks", "Feature", say("The marks, all on the same cage or feature"))
         add(obj, "App::PropertyString", "Feature", "Feature", say("The feature of the library"))
         obj.setEditorMode("Feature", 1)
-        add(obj, "App::PropertyFileIncluded", "Rules", "Feature", say("Rule file or profile of one's own; kept in the document"))
+        add(obj, "App::PropertyFile", "Rules", "Feature", say("Rule file or profile of one's own; read at every recompute"))
         for name, choices in (("Fit", FITS), ("Parity", PARITIES)):
             if name not in obj.PropertiesList:
                 add(obj, "App::PropertyEnumeration", name, "Feature", say("How the cage is fitted to the surface before, and what becomes of odd faces"))
@@ -44,7 +44,7 @@ class Feature(Proxy):
         return base_of(obj.Marks[0]) if obj.Marks else None
 
     def onChanged(self, obj, name):
-        if name in ("File", "Rules"):
+        if name == "Rules":
             self._mesh = None
 
     def mesh(self, obj):
@@ -88,8 +88,8 @@ def what(obj):
     welt = library()
     if not obj.Feature == "rules":
         return obj.Feature
-    if not obj.Rules or not os.path.exists(obj.Rules):
-        raise Problem(translate("Welt", "The rule file is gone: set the property Rules to a .rules or .toml file"))
+    if not os.path.exists(obj.Rules):
+        raise Problem(translate("Welt", "The rule file {} is gone: set the property Rules to a .rules or .toml file").format(obj.Rules))
     return obj.Rules if obj.Rules.endswith(".toml") else welt.Rules(obj.Rules)
 
 
@@ -158,6 +158,8 @@ def warnings(report):
 def make_feature(marks, name, rules="", **values):
     """A feature on marks; values are of its properties, such as Width=1.6."""
     document = marks[0].Document
+    # What cannot be read is told before there is an object.
+    parameters(name, rules)
     obj = document.addObject("Part::FeaturePython", "Rules" if name == "rules" else name.title())
     Feature(obj)
     obj.Feature = name

@@ -30,7 +30,7 @@ class Marks(Proxy):
             add(obj, "App::PropertyEnumeration", "Propagation", "Marks", say("How the selected elements are carried on"))
             obj.Propagation = list(PROPAGATIONS)
             obj.Propagation = "Ring"
-        add(obj, "App::PropertyFloatConstraint", "Place", "Marks", say("Where edges are crossed, from one end to the other"))
+        add(obj, "App::PropertyFloatConstraint", "Place", "Marks", say("Where edges are crossed, from the vertex of the lesser number to the other"))
         if obj.Place == 0.0:
             obj.Place = (0.5, 0.01, 0.99, 0.05)
         add(obj, "App::PropertyInteger", "Count", "Marks", say("Number of marked edges"))
@@ -47,6 +47,8 @@ class Marks(Proxy):
             obj.Known = []
 
     def compute(self, obj):
+        if base_of(obj) is None:
+            raise Problem(translate("Welt", "Nothing is marked: select edges of the cage and use Mark again"))
         mesh = mesh_of(base_of(obj))
         selection = mesh.select(selectors(obj, mesh))
         obj.Count = len(selection)
@@ -63,7 +65,7 @@ def base_of(marks):
 
 
 def elements(obj, mesh):
-    """The vertices of each marked element: one of a vertex, two of an edge."""
+    """The vertices of each marked element: one of a vertex, two of an edge, the lesser first."""
     names = obj.Elements[1] if obj.Elements else ()
     if not any(names):
         raise Problem(translate("Welt", "Nothing is marked: select edges of the cage and use Mark again"))
@@ -75,7 +77,7 @@ def elements(obj, mesh):
         whole = edges if name.startswith("Edge") else range(mesh.vertex_count)
         if number > len(whole):
             raise stale(obj, name)
-        found.append(tuple(edges[number - 1]) if whole is edges else (number - 1,))
+        found.append(tuple(sorted(edges[number - 1])) if whole is edges else (number - 1,))
     known = [",".join(map(str, ends)) for ends in found]
     if not obj.Known:
         obj.Known = known

@@ -68,6 +68,9 @@ class Panel:
         box, unit = self._number(length or getattr(obj, name + "Percent")), QtGui.QComboBox()
         unit.addItems(["mm", translate("Welt", "% of edge")])
         unit.setCurrentIndex(0 if length else 1)
+        # The panel of FreeCAD is narrow at first.
+        for narrow in (box, unit):
+            narrow.setMinimumWidth(60)
 
         def changed(*_):
             absolute = unit.currentIndex() == 0
@@ -84,6 +87,7 @@ class Panel:
     def _choice(self, layout, name):
         box = QtGui.QComboBox()
         box.addItems(self.object.getEnumerationsOfProperty(name))
+        box.setMinimumWidth(60)
         box.setCurrentText(getattr(self.object, name))
         box.currentTextChanged.connect(lambda text: self.change(name, text))
         layout.addRow(translate("Welt", name), box)

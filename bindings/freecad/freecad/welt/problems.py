@@ -25,6 +25,9 @@ def library():
 def sentence(error):
     """One line for whatever a computation raised."""
     text = " ".join(str(error).split()) or type(error).__name__
+    place = next((place for place in getattr(error, "places", ()) if place.file and place.line), None)
+    if place and place.file not in text:
+        return f"{place.file}:{place.line}: {text}."
     return text[0].upper() + text[1:] + ("" if text.endswith((".", "!", "?")) else ".")
 
 
