@@ -81,7 +81,8 @@ class ImportCage(Command):
         from .limit import make_limit
 
         obj = make_cage(document, path)
-        make_limit(obj)
+        # The cage is to be seen through the surface, so that its edges can be chosen.
+        make_limit(obj).ViewObject.Transparency = 50
         document.recompute()
         FreeCADGui.SendMsgToActiveView("ViewFit")
         return obj
@@ -152,8 +153,9 @@ class MakeFeature(Command):
             if not rules:
                 raise Problem(translate("Welt", "No rule file was chosen: the feature is not made"))
         obj = make_feature(marks, self.feature, rules)
-        chosen.follow(obj)
-        for hidden in marks + [marks[0].Elements[0]]:
+        for limit in chosen.follow(obj):
+            limit.ViewObject.Transparency = 0
+        for hidden in marks + [marks[0].Elements[0], obj]:
             hidden.ViewObject.Visibility = False
         FreeCADGui.Control.showDialog(Panel(obj))
         return True

@@ -20,6 +20,7 @@ class Panel:
     def __init__(self, obj):
         self.object = obj
         self.form = QtGui.QWidget()
+        self.form.setObjectName("WeltPanel")
         self.form.setWindowTitle(obj.Label)
         self.form.setWindowIcon(QtGui.QIcon(icon(obj.Feature.title())))
         layout = QtGui.QFormLayout(self.form)

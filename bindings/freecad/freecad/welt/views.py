@@ -19,6 +19,13 @@ class View:
 
     def attach(self, vobj):
         self.object = vobj.Object
+        if self.object.isDerivedFrom("Mesh::Feature"):
+            # Clicks go through the surface to the edges of the cage.
+            from pivy import coin
+
+            style = coin.SoPickStyle()
+            style.style = coin.SoPickStyle.UNPICKABLE
+            vobj.RootNode.insertChild(style, 0)
 
     def getIcon(self):
         obj = self.object
@@ -49,8 +56,7 @@ LOOKS = {
     "cage": {"LineColor": (0.15, 0.2, 0.3), "PointColor": (0.15, 0.2, 0.3), "LineWidth": 1.0, "PointSize": 3.0},
     "feature": {"LineColor": (0.1, 0.35, 0.6), "PointColor": (0.1, 0.35, 0.6), "LineWidth": 1.0, "PointSize": 2.0},
     "marks": {"LineColor": (0.85, 0.1, 0.1), "PointColor": (0.85, 0.1, 0.1), "LineWidth": 4.0, "PointSize": 4.0},
-    # A click goes to the edges of the cage.
-    "limit": {"ShapeColor": (0.8, 0.8, 0.78), "Lighting": "Two side", "Selectable": False},
+    "limit": {"ShapeColor": (0.8, 0.8, 0.78), "Lighting": "Two side"},
     "deviation": {"Lighting": "Two side"},
     "solid": {"ShapeColor": (0.8, 0.8, 0.78)},
 }
