@@ -140,7 +140,7 @@ case = Recomputed("test_a_width_too_large")
 case.debug()
 """
         out, err = run(program)
-        self.assertIn("does not fit edge", out + err)
+        self.assertRegex(out + err, "Welt: A width of 500.* does not fit edge .*")
         self.assertNotIn("Traceback", out + err)
 
     def test_the_library_is_missing_or_another(self):

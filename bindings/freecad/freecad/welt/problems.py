@@ -53,8 +53,21 @@ class _Restore:
 _restore = _Restore()
 
 
+class _Named(type):
+    """FreeCAD prints the class of an exception before its text."""
+
+    def __str__(cls):
+        return "Welt"
+
+    __repr__ = __str__
+
+
+class Refusal(RuntimeError, metaclass=_Named):
+    """What an object's `execute` tells."""
+
+
 def refuse(error):
     """Raises what an object's `execute` has to tell. FreeCAD shows it at the object, and prints it with Python's traceback
     unless that is limited: users need the sentence alone."""
     _restore.silence()
-    raise RuntimeError(sentence(error)) from None
+    raise Refusal(sentence(error)) from None
