@@ -197,8 +197,8 @@ void patches() {
             double const y = (knots[j + 1] + knots[j + 2] + knots[j + 3]) / 3;
             that(std::abs(pole[0] - 2 - x) < 1e-14 && std::abs(pole[1] - 2 - y) < 1e-14 && pole[2] == 0, "poles");
         }
-    for (std::uint32_t side = 0; side < 4; ++side)
-        that(patch.neighbours[side] == WELT_NONE && patch.irregular[side] == 0, "nothing lies beyond");
+    for (std::uint32_t edge = 0; edge < 4; ++edge)
+        that(patch.neighbours[edge] == WELT_NONE && patch.irregular[edge] == 0, "nothing lies beyond");
     that(patch.deviation == 0, "it is exact");
     that(found.report().json().find("\"exact\":1,") != std::string_view::npos, "report");
 
@@ -208,12 +208,12 @@ void patches() {
     that(four.count() == 4, "long rectangles are cut");
     std::size_t shared = 0;
     for (std::size_t number = 0; number < four.count(); ++number)
-        for (std::uint32_t side = 0; side < 4; ++side) {
-            std::uint32_t const beyond = four[number].neighbours[side];
+        for (std::uint32_t edge = 0; edge < 4; ++edge) {
+            std::uint32_t const beyond = four[number].neighbours[edge];
             if (beyond == WELT_NONE) continue;
             ++shared;
             welt_patch const other = four[beyond];
-            that(other.neighbours[four[number].neighbour_sides[side]] == number, "neighbours know each other");
+            that(other.neighbours[four[number].neighbour_sides[edge]] == number, "neighbours know each other");
         }
     that(shared == 8, "each patch has two neighbours");
     failure(WELT_ERROR_ARGUMENT, [&] { four[4]; });
