@@ -11,7 +11,7 @@ use glam::{DVec2, DVec3};
 /// Samples per side of a span beside an extraordinary vertex.
 const FINE: usize = 8;
 /// Samples per side of other spans.
-const COARSE: usize = 2;
+const COARSE: usize = 1;
 /// Steps towards the foot of a sample.
 const STEPS: usize = 3;
 
@@ -22,39 +22,53 @@ pub(super) struct Distance {
     pub(super) relative: f64,
 }
 
-/// Measures a patch. Distances within rounding count as none.
-pub(super) fn distance(
-    mesh: &Mesh,
-    surface: &LimitSurface,
-    cells: &[Cell],
-    region: &Region,
-    patch: &SplinePatch,
-) -> Distance {
-    let mut worst = Distance::default();
-    let (us, vs) = (spans(&patch.knots_u), spans(&patch.knots_v));
-    for (j, &[v0, v1]) in vs.iter().enumerate() {
-        for (i, &[u0, u1]) in us.iter().enumerate() {
-            let corners = [[0, 0], [us.len() - 1, 0], [us.len() - 1, vs.len() - 1], [0, vs.len() - 1]];
-            let open = corners.into_iter().zip(patch.irregular).any(|(at, open)| open && at == [i, j]);
-            let count = if open { FINE } else { COARSE };
-            let place = |k: usize, low: f64, high: f64| low + (high - low) * (k as f64 + 0.5) / count as f64;
-            let middle = DVec2::new(0.5 * (u0 + u1), 0.5 * (v0 + v1));
-            let (base, frame) = patch_of(cells, region, middle);
-            for k in 0..count * count {
-                let at = DVec2::new(place(k % count, u0, u1), place(k / count, v0, v1));
-                let Some(found) = patch.evaluate(at.x, at.y) else { continue };
-                let far = foot_distance(surface, base, frame.local(at), found.position);
-                if far > surface.tolerance.max(1e-13 * surface.size) && far > worst.absolute {
-                    worst.absolute = far;
+/// Measures patches of a surface.
+pub(super) struct Ruler<'a> {
+    pub(super) mesh: &'a Mesh,
+    pub(super) surface: &'a LimitSurface,
+    pub(super) cells: &'a [Cell],
+}
+
+/// Which spans of a patch are measured.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(super) enum Spans {
+    All,
+    /// Those beside extraordinary vertices.
+    Last,
+}
+
+impl Ruler<'_> {
+    /// Measures a patch. Distances within rounding count as none.
+    pub(super) fn distance(&self, region: &Region, patch: &SplinePatch, which: Spans) -> Distance {
+        let mut worst = Distance::default();
+        let rounding = self.surface.tolerance.max(1e-13 * self.surface.size);
+        let (us, vs) = (spans(&patch.knots_u), spans(&patch.knots_v));
+        for (j, &[v0, v1]) in vs.iter().enumerate() {
+            for (i, &[u0, u1]) in us.iter().enumerate() {
+                let corners = [[0, 0], [us.len() - 1, 0], [us.len() - 1, vs.len() - 1], [0, vs.len() - 1]];
+                let last = corners.into_iter().zip(patch.irregular).any(|(at, last)| last && at == [i, j]);
+                if !last && which == Spans::Last {
+                    continue;
                 }
-                if far > surface.tolerance.max(1e-13 * surface.size) {
-                    let face = surface.places[base].face;
-                    worst.relative = worst.relative.max(far / edge_length(mesh, face));
+                let count = if last { FINE } else { COARSE };
+                let place =
+                    |k: usize, low: f64, high: f64| low + (high - low) * (k as f64 + 0.5) / count as f64;
+                let (base, frame) =
+                    patch_of(self.cells, region, DVec2::new(0.5 * (u0 + u1), 0.5 * (v0 + v1)));
+                for k in 0..count * count {
+                    let at = DVec2::new(place(k % count, u0, u1), place(k / count, v0, v1));
+                    let Some(found) = patch.evaluate(at.x, at.y) else { continue };
+                    let far = foot_distance(self.surface, base, frame.local(at), found.position);
+                    if far > rounding {
+                        let length = edge_length(self.mesh, self.surface.places[base].face);
+                        worst.absolute = worst.absolute.max(far);
+                        worst.relative = worst.relative.max(far / length);
+                    }
                 }
             }
         }
+        worst
     }
-    worst
 }
 
 /// The spans of flat knots.

@@ -29,6 +29,7 @@ use super::LimitSurface;
 use crate::job::{Cancelled, Job};
 use crate::mesh::{FaceId, Mesh};
 use cells::Component;
+use measure::{Ruler, Spans};
 use pieces::Pieces;
 use regions::Region;
 
@@ -78,7 +79,9 @@ pub struct Patches {
 }
 
 /// Rings at first and at most.
-const RINGS: std::ops::RangeInclusive<u32> = 3..=12;
+const RINGS: std::ops::RangeInclusive<u32> = 3..=10;
+/// What one more ring divides the deviation by at best: seen at valence 3.
+const PER_RING: f64 = 6.0;
 
 impl Patches {
     /// The limit surface of `faces` as patches; boundary loops and faces that do not exist or have no limit surface are
@@ -116,26 +119,30 @@ impl Patches {
         let cells = &component.cells;
         let regions = regions::regions(cells, options.most_faces.max(1).saturating_mul(component.per_side));
         let neighbours = seam::neighbours(cells, &regions);
-        let mut rings = *RINGS.start();
+        let ruler = Ruler { mesh, surface, cells };
+        let regular = regions.iter().all(|region| region.irregular == [false; 4]);
+        let mut rings = if regular { 0 } else { *RINGS.start() };
         let mut patches = loop {
             let inner = knots::inner_knots(cells, rings);
             let mut patches = Vec::with_capacity(regions.len());
             let mut worst: f64 = 0.0;
             for (number, region) in regions.iter().enumerate() {
                 step(number as f64 / regions.len() as f64)?;
-                let mut patch = make(cells, region, &inner, pieces);
-                let found = measure::distance(mesh, surface, cells, region, &patch);
-                (patch.deviation, patch.relative_deviation) = (found.absolute, found.relative);
-                worst = worst.max(found.relative);
+                let patch = make(cells, region, &inner, pieces);
+                worst = worst.max(ruler.distance(region, &patch, Spans::Last).relative);
                 patches.push(patch);
             }
-            let regular = regions.iter().all(|region| region.irregular == [false; 4]);
-            if worst <= options.tolerance || regular || rings >= *RINGS.end() {
-                self.report.rings = self.report.rings.max(if regular { 0 } else { rings });
+            if worst <= options.tolerance || rings >= *RINGS.end() {
                 break patches;
             }
-            rings += 1;
+            let missing = (worst / options.tolerance).log(PER_RING).floor().clamp(1.0, 4.0);
+            rings = (rings + missing as u32).min(*RINGS.end());
         };
+        self.report.rings = self.report.rings.max(rings);
+        for (region, patch) in regions.iter().zip(&mut patches) {
+            let found = ruler.distance(region, patch, Spans::All);
+            (patch.deviation, patch.relative_deviation) = (found.absolute, found.relative);
+        }
         seam::join(&mut patches, &neighbours);
         self.report_on(&patches, &neighbours, cells, &regions);
         let first = self.patches.len();
