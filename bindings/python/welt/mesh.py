@@ -14,6 +14,7 @@ from .arrays import ArrayLike
 from .errors import ArgumentError
 from .job import Job, run
 from .marks import Rules, Selection
+from .patches import Patches
 from .surface import BATCH_WIDTHS, Refinement, Surface
 
 Settings = Union[str, Mapping[str, Union[int, float, str]]]
@@ -250,6 +251,27 @@ class Mesh(Handle):
         count = 0 if given is None else given.count
         pointer = arrays.pointer_or_null(given)
         return run(job, lambda watched: Surface._adopt(make("welt_surface_create", self, pointer, count, watched)))
+
+    def patches(
+        self,
+        faces: Optional[ArrayLike] = None,
+        *,
+        most_faces: int = 10,
+        tolerance: float = 1e-4,
+        job: Optional[Job] = None,
+    ) -> Patches:
+        """The limit surface of some faces (0-based) or of all as bicubic B-spline patches, for CAD. They meet side to side, with
+        poles that are the same to the last bit.
+
+        most_faces: faces along a side of a patch at most.
+        tolerance: aim for the deviation beside extraordinary vertices, in parts of the mean length of the edges there.
+        """
+        given = None if faces is None else arrays.indices(faces, 1, "faces")
+        count = 0 if given is None else given.count
+        pointer, chosen = arrays.pointer_or_null(given), options.patch(most_faces, tolerance)
+        return run(
+            job, lambda watched: Patches._adopt(make("welt_patches_create", self, pointer, count, chosen, watched))
+        )
 
     def deviation(self, other: Mesh, samples: int = 8, *, job: Optional[Job] = None) -> Deviation:
         """How far the limit surfaces of two control meshes are apart, both ways; 1 to 64 samples per side of each face."""
