@@ -124,7 +124,10 @@ fn feed(name: &str, target: fuzz::Target) -> (usize, usize, Duration) {
     let (mut refused, mut longest) = (0, Duration::ZERO);
     for input in &inputs {
         let start = Instant::now();
-        refused += usize::from(!target(input));
+        let accepted = std::panic::catch_unwind(|| target(input)).unwrap_or_else(|_| {
+            panic!("{name}: the panic above came from {:?}", String::from_utf8_lossy(input))
+        });
+        refused += usize::from(!accepted);
         let time = start.elapsed();
         assert!(time < LONGEST, "{name}: {time:?} for {:?}", String::from_utf8_lossy(input));
         longest = longest.max(time);

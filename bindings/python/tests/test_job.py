@@ -1,6 +1,5 @@
 """Progress, cancelling, threads, Ctrl-C."""
 
-import os
 import signal
 import subprocess
 import sys

@@ -1,12 +1,14 @@
 """Finding the library, and what is said where it is missing or another."""
 
 import ctypes.util
+import importlib.util
 import os
 import shutil
 import subprocess
 import sys
 import tempfile
 import unittest
+import zipfile
 
 import welt
 from welt import _library
@@ -69,6 +71,23 @@ class Finding(unittest.TestCase):
             file.write('\nPROTOTYPES += "int32_t welt_not_yet(void);"\n')
         said = load({"WELT_LIBRARY": os.path.realpath(welt.library_file)}, self.path)
         self.assertRegex(said, "lacks welt_not_yet: it is older than this package; install")
+
+    @unittest.skipUnless(importlib.util.find_spec("setuptools") and importlib.util.find_spec("wheel"), "skipped: setuptools or wheel is absent")
+    def test_the_wheel_has_the_library(self):
+        source = os.path.dirname(PACKAGE)
+        copy = os.path.join(self.path, "source")
+        shutil.copytree(source, copy, ignore=shutil.ignore_patterns("__pycache__", "tests", "build", "*.egg-info"))
+        small = os.path.join(self.path, "small.so")
+        with open(small, "wb") as file:
+            file.write(b"stands for the library")
+        subprocess.run(
+            [sys.executable, "setup.py", "-q", "bdist_wheel"], cwd=copy, env={**os.environ, "WELT_LIBRARY": small}, check=True, capture_output=True
+        )
+        (wheel,) = os.listdir(os.path.join(copy, "dist"))
+        self.assertTrue(wheel.startswith(f"welt-{welt.__version__}-py3-none-"), wheel)
+        names = zipfile.ZipFile(os.path.join(copy, "dist", wheel)).namelist()
+        self.assertIn("welt/" + _library.NAME, names)
+        self.assertEqual({n for n in names if n.endswith(".py")}, {"welt/" + f for f in os.listdir(PACKAGE) if f.endswith(".py")})
 
 
 if __name__ == "__main__":

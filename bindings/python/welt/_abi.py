@@ -298,7 +298,7 @@ def ctype(declaration: str) -> Any:
         return ctypes.c_char_p
     if name not in _VALUES:
         return ctypes.c_void_p if stars == 1 else ctypes.POINTER(ctypes.c_void_p)
-    result = _VALUES[name]
+    result: Any = _VALUES[name]
     for _ in range(stars):
         result = ctypes.POINTER(result)
     return result

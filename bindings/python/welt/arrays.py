@@ -14,7 +14,7 @@ from .errors import ArgumentError
 try:
     import numpy
 except ImportError:
-    numpy = None  # type: ignore[assignment]
+    numpy = None  # type: ignore[assignment,unused-ignore]
 
 #: Whatever numpy.asarray takes; nested sequences without numpy.
 ArrayLike = Union[Sequence[Any], Iterable[Any], memoryview, Any]
@@ -48,7 +48,7 @@ def _numbers(values: Any, kind: Tuple[Any, str, str], what: str) -> Tuple[Any, i
         return flat.ctypes.data, flat.size, flat
     if isinstance(values, memoryview) and values.format == kind[2] and values.c_contiguous and not values.readonly:
         size = values.nbytes // values.itemsize
-        held = (kind[0] * size).from_buffer(values) if size else values
+        held: Any = (kind[0] * size).from_buffer(values) if size else values
         return (ctypes.addressof(held) if size else 0), size, held
     held = array.array(kind[2], _flat(values))
     return held.buffer_info()[0], len(held), held
@@ -92,7 +92,7 @@ def shaped(memory: Any, kind: Tuple[Any, str, str], shape: Tuple[int, ...], read
         if readonly:
             result.flags.writeable = False
         return result
-    view = memoryview(memory).cast("B")
+    view: Any = memoryview(memory).cast("B")
     # A memory view cannot have a length of 0 in one of several dimensions.
     view = view.cast(kind[2], shape=list(shape)) if all(shape) else view.cast(kind[2])
     return view.toreadonly() if readonly else view

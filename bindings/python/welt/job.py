@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import ctypes
 import threading
-from typing import Any, Callable, List, Optional
+from typing import Any, Callable, List, Optional, TypeVar
 
 from ._handle import Handle, call, make
+
+T = TypeVar("T")
 
 #: Seconds from one call of an observer to the next.
 INTERVAL = 0.05
@@ -45,7 +47,7 @@ class Job(Handle):
         return buffer.value.decode(errors="ignore")
 
 
-def run(job: Optional[Job], work: Callable[[Optional[Job]], Any]) -> Any:
+def run(job: Optional[Job], work: Callable[[Optional[Job]], T]) -> T:
     """Runs a call that takes a job.
 
     A thread of its own does the work while this one waits: only so can Ctrl-C, which Python brings to the main thread,
@@ -54,7 +56,7 @@ def run(job: Optional[Job], work: Callable[[Optional[Job]], Any]) -> Any:
     if job is None and threading.current_thread() is not threading.main_thread():
         return work(None)
     watched = job or Job()
-    results: List[Any] = []
+    results: List[T] = []
     failures: List[BaseException] = []
     done = threading.Event()
 

@@ -68,9 +68,9 @@ class Rules(Handle):
         for index in range(call("welt_rules_parameter_count", self)):
             low, high = ctypes.c_double(), ctypes.c_double()
             call("welt_rules_parameter_range", self, index, ctypes.byref(low), ctypes.byref(high))
-            texts = (call(f"welt_rules_parameter_{part}", self, index).decode() for part in ("name", "unit", "help"))
+            name, unit, text = (call(f"welt_rules_parameter_{part}", self, index).decode() for part in ("name", "unit", "help"))
             default = float(call("welt_rules_parameter_default", self, index))
-            result.append(Parameter(*texts, default, low.value, high.value))
+            result.append(Parameter(name, unit, text, default, low.value, high.value))
         return result
 
 

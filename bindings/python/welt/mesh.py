@@ -348,11 +348,12 @@ class Mesh(Handle):
         """
         chosen = options.feature(fit, parity, strict, deviation)
         text = options.settings(settings)
+        what: List[Any]
         if isinstance(features, Rules):
-            name, what = "welt_rules_apply", (features,)
+            name, what = "welt_rules_apply", [features]
         else:
             lines = features.encode()
-            name, what = "welt_feature_apply", (lines, len(lines))
+            name, what = "welt_feature_apply", [lines, len(lines)]
         return run(
             job,
             lambda watched: options.report(

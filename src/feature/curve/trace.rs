@@ -5,7 +5,7 @@ use crate::feature::FeatureError;
 use crate::mark::{Curve, Mark};
 use crate::mesh::{FaceId, Mesh, VertexId};
 use crate::subdivision::limit_position;
-use crate::surface::LimitSurface;
+use crate::surface::{ClosestOptions, LimitSurface};
 use glam::DVec3;
 use rustc_hash::{FxHashMap, FxHashSet};
 
@@ -40,6 +40,13 @@ pub(in super::super) fn trace(
         error("it is far from the surface; give points on or near the limit surface, in model units")
     })?;
     let surface = LimitSurface::around(mesh, &faces);
+    // Also bounds the number of samples.
+    let reach = ClosestOptions { radius: surface.size(), facing: None };
+    if let Some(far) = curve.points.iter().position(|&point| surface.closest(point, &reach).is_none()) {
+        return Err(error(&format!(
+            "point {far} lies far from the surface; give points on or near the limit surface, in model units"
+        )));
+    }
     let (track, feet) = Track::project(&surface, curve, edge).ok_or_else(|| {
         error("it does not lie along the surface; give points on or near the limit surface, in model units")
     })?;

@@ -81,10 +81,7 @@ pub fn script(bytes: &[u8]) -> bool {
 pub fn profile(bytes: &[u8]) -> bool {
     let Ok(text) = std::str::from_utf8(bytes) else { return false };
     match Profile::parse("fuzz.toml", text) {
-        Ok(profile) => {
-            assert!(!profile.lines.is_empty());
-            true
-        }
+        Ok(_) => true,
         Err(error) => {
             assert!(!error.to_string().is_empty());
             false

@@ -154,12 +154,12 @@ document.recompute()
 print("said:", document.Groove.getStatusString() + " | " + document.Marks.getStatusString())
 print("shape:", len(document.Groove.Shape.Edges))
 """
-        for library, sentence in (
+        for library, said in (
             ("/nowhere/libwelt.so", "The welt library is not usable: the welt library cannot be loaded .*install the package"),
             ("libm.so.6", "libm.so.6 is no welt library; install the package"),
         ):
             with self.subTest(library=library):
                 out, err = run(program, WELT_LIBRARY=library)
-                self.assertRegex(out, sentence)
+                self.assertRegex(out, said)
                 self.assertIn(f"shape: {len(cage.Shape.Edges)}", out)
                 self.assertNotIn("Traceback", out + err)

@@ -74,6 +74,7 @@ class Objects(Case):
 import FreeCAD
 document = FreeCAD.openDocument({self.path("chair.FCStd")!r})
 assert all(obj.Proxy is not None and obj.Proxy.kind for obj in document.Objects)
+assert document.Marks.Known == ["3,331"], document.Marks.Known
 assert not any("Touched" in obj.State for obj in document.Objects), "opening computes nothing"
 ridge = document.Ridge
 ridge.Proxy.mesh(ridge).write({self.path("opened.obj")!r})
@@ -149,7 +150,20 @@ print("the end")
             file.write(f'include "{REPOSITORY}/rules/linear.rules"\nparameter height 2 range 0.5 10 unit length "How far up"\n')
         own = make_feature([make_marks(cage, ["Edge1"])], "rules", path)
         self.assertEqual(own.Height.Value, 2.0)
-        self.document.recompute()
+        self.recompute(own)
+
+    def test_a_profile_of_ones_own(self):
+        with open(os.path.join(REPOSITORY, "profiles/groove.toml")) as file:
+            text = file.read()
+        path = self.path("own.toml")
+        with open(path, "w") as file:
+            file.write(text.replace('name = "groove"', 'name = "furrow"'))
+        cage = self.cage()
+        marks = make_marks(cage, [edge_name(cage, 0, 1)])
+        own, groove = make_feature([marks], "rules", path, Width=1.2), make_feature([marks], "groove", Width=1.2)
+        self.recompute()
+        self.assertEqual((own.WidthPercent, own.DepthPercent), (30.0, 10.0))
+        self.assertEqual(own.Proxy.mesh(own).positions.tolist(), groove.Proxy.mesh(groove).positions.tolist())
 
     def test_propagations(self):
         cage = self.cage()

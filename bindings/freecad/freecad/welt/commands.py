@@ -1,6 +1,5 @@
 """The commands of the workbench."""
 
-import os
 
 import FreeCAD
 import FreeCADGui

@@ -9,6 +9,12 @@ from .marks import base_of, selectors
 from .objects import Proxy, add, cage_shape, mesh_of
 from .problems import Problem, library
 
+try:
+    import tomllib
+except ImportError:
+    # Before Python 3.11: a profile of one's own has the defaults that it declares.
+    tomllib = None
+
 translate = FreeCAD.Qt.translate
 
 FITS = {"Solve": "solve", "Surface": "surface", "Surface, sliding": "surface_slide", "Loop": "loop", "None": "none"}
@@ -89,7 +95,7 @@ def what(obj):
     if not obj.Feature == "rules":
         return obj.Feature
     if not os.path.exists(obj.Rules):
-        raise Problem(translate("Welt", "The rule file {} is gone: set the property Rules to a .rules or .toml file").format(obj.Rules))
+        raise rules_gone(obj.Rules)
     return obj.Rules if obj.Rules.endswith(".toml") else welt.Rules(obj.Rules)
 
 
@@ -97,13 +103,30 @@ def parameters(name, path=""):
     """What a feature or a rule file declares: name, unit, default, low, high and help of each parameter."""
     welt = library()
     if name == "rules":
-        if path.endswith(".toml"):
-            return []
-        return [p._asdict() for p in welt.Rules(path).parameters]
+        return profile(path) if path.endswith(".toml") else [p._asdict() for p in welt.Rules(path).parameters]
     for feature in welt.features():
         if feature["name"] == name:
             return feature["parameters"]
     raise Problem(translate("Welt", "The library knows no feature {}: install the version that made the document").format(name))
+
+
+def profile(path):
+    """The parameters of a profile file, as features declare them."""
+    if tomllib is None:
+        return []
+    try:
+        with open(path, "rb") as file:
+            content = tomllib.load(file)
+    except OSError:
+        raise rules_gone(path) from None
+    except ValueError as error:
+        raise Problem(f"{path}: {error}") from None
+    whole = {"unit": "length", "low": None, "high": None, "help": "", "default": 0.0}
+    return [{**whole, **parameter} for parameter in content.get("parameter", [])]
+
+
+def rules_gone(path):
+    return Problem(translate("Welt", "The rule file {} is gone: set the property Rules to a .rules or .toml file").format(path))
 
 
 def property_name(parameter):
