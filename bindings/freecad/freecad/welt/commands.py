@@ -81,7 +81,7 @@ class ImportCage(Command):
 
         obj = make_cage(document, path)
         # The cage is to be seen through the surface, so that its edges can be chosen.
-        make_limit(obj).ViewObject.Transparency = 50
+        make_limit(obj).ViewObject.Transparency = 70
         document.recompute()
         FreeCADGui.SendMsgToActiveView("ViewFit")
         return obj

@@ -53,12 +53,13 @@ class View:
 
 
 LOOKS = {
-    "cage": {"LineColor": (0.15, 0.2, 0.3), "PointColor": (0.15, 0.2, 0.3), "LineWidth": 1.0, "PointSize": 3.0},
-    "feature": {"LineColor": (0.1, 0.35, 0.6), "PointColor": (0.1, 0.35, 0.6), "LineWidth": 1.0, "PointSize": 2.0},
+    "cage": {"LineColor": (0.15, 0.2, 0.3), "PointColor": (0.15, 0.2, 0.3), "LineWidth": 2.0, "PointSize": 4.0},
+    "feature": {"LineColor": (0.1, 0.35, 0.6), "PointColor": (0.1, 0.35, 0.6), "LineWidth": 2.0, "PointSize": 3.0},
     "marks": {"LineColor": (0.85, 0.1, 0.1), "PointColor": (0.85, 0.1, 0.1), "LineWidth": 4.0, "PointSize": 4.0},
     "limit": {"ShapeColor": (0.8, 0.8, 0.78), "Lighting": "Two side"},
     "deviation": {"Lighting": "Two side"},
-    "solid": {"ShapeColor": (0.8, 0.8, 0.78)},
+    # Fine enough for a groove.
+    "solid": {"ShapeColor": (0.8, 0.8, 0.78), "Deviation": 0.1, "AngularDeflection": 10.0},
 }
 
 
