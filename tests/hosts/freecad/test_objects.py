@@ -101,6 +101,25 @@ print("the end")
             with open(self.path(name + ".obj"), "rb") as file:
                 self.assertEqual(file.read(), expected, name)
 
+    def test_another_file(self):
+        cage = self.cage(torus(8, 6))
+        groove = self.groove(cage, 0, 1)
+        cage.Points = [p * 2 for p in cage.Points]
+        self.recompute()
+        with open(self.path("other.obj"), "w") as file:
+            file.write(torus(8, 6, 80.0))
+        self.document.UndoMode = 1
+        self.document.openTransaction("another file")
+        cage.File = self.path("other.obj")
+        self.recompute()
+        self.document.commitTransaction()
+        expected = welt.Mesh.read(self.path("other.obj"))
+        self.assertEqual(cage.Proxy.mesh(cage).positions.tolist(), expected.positions.tolist())
+        self.assertGreater(groove.Shape.BoundBox.XMax, 85)
+        self.document.undo()
+        self.recompute()
+        self.assertAlmostEqual(cage.Points[0].x, 2 * 65.0, 12)
+
     def test_undo_and_redo(self):
         self.document.UndoMode = 1
         groove = self.groove(self.cage(), 0, 1, Width=1.0)
