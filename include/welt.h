@@ -251,6 +251,11 @@ typedef struct welt_job welt_job;
 typedef struct welt_mesh welt_mesh;
 
 /*
+ The limit surface as bicubic B-spline patches. Never changes.
+ */
+typedef struct welt_patches welt_patches;
+
+/*
  The Catmull-Clark refinements of a mesh, level by level. Level 0 is the mesh itself as it was. Never changes, and does
  not depend on the mesh after it was made.
  */
@@ -380,6 +385,91 @@ typedef struct {
      */
     double distance;
 } welt_surface_point;
+
+/*
+ How patches are made.
+ */
+typedef struct {
+    /*
+     Set by welt_patch_options_init; leave it.
+     */
+    uint32_t struct_size;
+    /*
+     Faces along a side of a patch at most, 1 or more. Default 10.
+     */
+    uint32_t most_faces;
+    /*
+     Aim for the deviation beside extraordinary vertices, in parts of the mean length of the edges of the control face
+     there; greater than 0. Default 1e-4.
+     */
+    double tolerance;
+} welt_patch_options;
+
+/*
+ A bicubic B-spline patch of the limit surface. The arrays belong to the patches and are valid until they are freed.
+ */
+typedef struct {
+    /*
+     x, y and z of each pole, row by row, u running fastest: pole (i, j) is number j * pole_count_u + i.
+     */
+    const double *poles;
+    /*
+     Knots along u, ascending, pole_count_u + degree_u + 1 of them: the first and the last one stand degree_u + 1 times, those
+     between once.
+     */
+    const double *knots_u;
+    /*
+     Knots along v, likewise.
+     */
+    const double *knots_v;
+    /*
+     The control faces whose surface it is, row by row, u running fastest, each once.
+     */
+    const uint32_t *faces;
+    /*
+     Number of faces.
+     */
+    size_t face_count;
+    /*
+     3.
+     */
+    uint32_t degree_u;
+    /*
+     3.
+     */
+    uint32_t degree_v;
+    /*
+     Poles along u.
+     */
+    uint32_t pole_count_u;
+    /*
+     Poles along v.
+     */
+    uint32_t pole_count_v;
+    /*
+     Per side the patch beyond it, or WELT_NONE at the border of the surface. Sides: 0 at the first v in the direction of u,
+     1 at the last u, 2 at the last v against u, 3 at the first u. The two patches have the same poles along the side, in
+     opposite order, equal to the last bit, and the same spans of knots.
+     */
+    uint32_t neighbours[4];
+    /*
+     Which side of that patch; WELT_NONE at the border.
+     */
+    uint32_t neighbour_sides[4];
+    /*
+     Per corner, at which side of the same number begins, not 0 where an extraordinary vertex lies there: in the last
+     span beside it the patch is an approximation. Everywhere else it is the limit surface itself.
+     */
+    uint32_t irregular[4];
+    /*
+     Greatest distance to the limit surface that was found; 0 where the patch is exact.
+     */
+    double deviation;
+    /*
+     The same in parts of the mean length of the edges of the control face.
+     */
+    double relative_deviation;
+} welt_patch;
 
 /*
  The version of the library that runs, in the form of WELT_VERSION. It can differ from that of the header when the
@@ -1458,6 +1548,78 @@ int32_t welt_surface_all_hits(const welt_surface *surface,
                               welt_surface_point *found,
                               size_t capacity,
                               welt_error **error);
+
+/*
+ Sets options to their defaults. options: must not be NULL. size: sizeof *options. Fails with WELT_ERROR_ARGUMENT where the
+ size is none that the library knows. Since: 0.1.
+ */
+WELT_API
+int32_t welt_patch_options_init(welt_patch_options *options,
+                                size_t size);
+
+/*
+ Makes bicubic B-spline patches of the limit surface (Catmull-Clark), for CAD.
+
+ mesh: must not be NULL.
+ faces: the faces whose surface is wanted, 0-based; NULL for all. Cost follows their number.
+ count: number of faces; 0 where faces is NULL.
+ options: NULL for the defaults.
+ job: may be NULL.
+ patches: receives the handle; free it with welt_patches_free.
+
+ The patches meet side to side: no corner of one lies within a side of another. Extraordinary vertices and
+ creases lie at corners and along sides only. Fails with WELT_ERROR_ARGUMENT where a face does not exist or an option is out of
+ its range, and with WELT_ERROR_CANCELLED. Since: 0.1.
+ */
+WELT_API
+int32_t welt_patches_create(const welt_mesh *mesh,
+                            const uint32_t *faces,
+                            size_t count,
+                            const welt_patch_options *options,
+                            const welt_job *job,
+                            welt_patches **patches,
+                            welt_error **error);
+
+/*
+ Frees patches. NULL is allowed. Since: 0.1.
+ */
+WELT_API void welt_patches_free(welt_patches *patches);
+
+/*
+ Number of patches; 0 where patches is NULL. Since: 0.1.
+ */
+WELT_API size_t welt_patches_count(const welt_patches *patches);
+
+/*
+ One of the patches.
+
+ patches: must not be NULL.
+ index: below welt_patches_count(patches).
+ patch: receives it; its arrays belong to patches and are valid until that is freed.
+
+ Fails with WELT_ERROR_ARGUMENT where there is no such patch. Since: 0.1.
+ */
+WELT_API
+int32_t welt_patches_get(const welt_patches *patches,
+                         size_t index,
+                         welt_patch *patch,
+                         welt_error **error);
+
+/*
+ What was made.
+
+ patches: must not be NULL.
+ report: receives a report whose JSON has patches, exact, approximate and faces (numbers), rings (of exact pieces round
+ extraordinary vertices), max_deviation (in units of the model), max_relative_deviation (in parts of the mean length of
+ the edges of the control face) and max_normal_jump (greatest angle in degrees between the normals of two patches along
+ a side that is no crease). Free it with welt_report_free.
+
+ Since: 0.1.
+ */
+WELT_API
+int32_t welt_patches_report(const welt_patches *patches,
+                            welt_report **report,
+                            welt_error **error);
 
 #ifdef __cplusplus
 }

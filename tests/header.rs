@@ -59,6 +59,7 @@ fn header_is_up_to_date() {
         "surface",
         "evaluate",
         "query",
+        "patches",
     ] {
         builder = builder.with_src(root().join("src/ffi").join(section).with_extension("rs"));
     }

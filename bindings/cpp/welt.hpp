@@ -244,6 +244,14 @@ struct FeatureOptions : welt_feature_options {
     }
 };
 
+// The members of welt_patch_options, set to their defaults.
+struct PatchOptions : welt_patch_options {
+    PatchOptions() {
+        if (welt_patch_options_init(this, sizeof(welt_patch_options)) != WELT_OK)
+            throw Error(WELT_ERROR_ARGUMENT, "the library is older than welt.h: welt_patch_options is unknown to it");
+    }
+};
+
 // The members of welt_batch_options, set to their defaults.
 struct BatchOptions : welt_batch_options {
     BatchOptions() {
@@ -424,6 +432,21 @@ private:
     }
 };
 
+// The limit surface as bicubic B-spline patches.
+class Patches : public detail::Handle<welt_patches, welt_patches_free> {
+public:
+    using Handle::Handle;
+    std::size_t count() const { return welt_patches_count(get()); }
+
+    // Its arrays are valid as long as the patches.
+    welt_patch operator[](std::size_t index) const {
+        welt_patch patch;
+        detail::call(welt_patches_get, get(), index, &patch);
+        return patch;
+    }
+    Report report() const { return Report(detail::make<welt_report>(welt_patches_report, get())); }
+};
+
 // --- Marks and rules ---------------------------------------------------------------------------------------------------
 
 class Mesh;
@@ -548,6 +571,15 @@ public:
         static constexpr std::uint32_t none = 0;
         return frozen(faces.empty() ? &none : faces.data(), faces.size(), job);
     }
+    // For CAD.
+    Patches patches(PatchOptions const& options = {}, Job const* job = nullptr) const {
+        return patched(nullptr, 0, options, job);
+    }
+    Patches patches(View<std::uint32_t> faces, PatchOptions const& options = {}, Job const* job = nullptr) const {
+        // NULL would stand for all faces.
+        static constexpr std::uint32_t none = 0;
+        return patched(faces.empty() ? &none : faces.data(), faces.size(), options, job);
+    }
     struct Deviation {
         double largest, root_mean_square, percentile_95;
     };
@@ -638,6 +670,12 @@ private:
     Surface frozen(std::uint32_t const* faces, std::size_t count, Job const* job) const {
         return Job::run(job, [&](welt_job const* watched) {
             return Surface(detail::make<welt_surface>(welt_surface_create, get(), faces, count, watched));
+        });
+    }
+    Patches patched(std::uint32_t const* faces, std::size_t count, PatchOptions const& options, Job const* job) const {
+        return Job::run(job, [&](welt_job const* watched) {
+            return Patches(
+                detail::make<welt_patches>(welt_patches_create, get(), faces, count, &options, watched));
         });
     }
     Report fitted(std::uint32_t const* vertices, std::size_t count, Surface const& surface, std::uint32_t fit,

@@ -22,6 +22,8 @@ pub enum Command {
     Limit(Limit),
     /// Measure how far the limit surfaces of two control meshes are apart
     Deviation(Deviation),
+    /// Turn the limit surface into bicubic B-spline patches for CAD
+    Patches(Patches),
     /// Tell where extraordinary vertices sit, how much curvature varies round them, and which faces are worst
     Quality(Quality),
     /// Check, test or list rule files
@@ -173,6 +175,23 @@ pub struct Limit {
     /// Draw the surface with reflection lines, which show unevenness that shading hides
     #[arg(long, value_name = "FILE.png")]
     pub zebra: Option<PathBuf>,
+    #[command(flatten)]
+    pub import: Import,
+}
+
+#[derive(Args)]
+pub struct Patches {
+    /// OBJ or PLY file, or - for OBJ on standard input
+    pub input: PathBuf,
+    /// JSON file with knots, poles and neighbours of the patches, or - for standard output
+    #[arg(short, long, value_name = "FILE")]
+    pub output: PathBuf,
+    /// Faces along a side of a patch at most
+    #[arg(long, value_name = "N", default_value_t = 10, value_parser = clap::value_parser!(u32).range(1..))]
+    pub most_faces: u32,
+    /// Aim for the deviation beside extraordinary vertices, in parts of the mean edge of the control face there
+    #[arg(long, value_name = "PART", default_value_t = 1e-4)]
+    pub tolerance: f64,
     #[command(flatten)]
     pub import: Import,
 }

@@ -11,6 +11,7 @@ mod figure;
 mod files;
 mod limit;
 mod output;
+mod patches;
 mod progress;
 mod quality;
 mod rules;
@@ -28,6 +29,7 @@ pub fn run() -> ExitCode {
         Command::Apply(apply) => apply::run(apply),
         Command::Limit(limit) => limit::run(limit),
         Command::Deviation(deviation) => deviation::run(deviation),
+        Command::Patches(patches) => patches::run(patches),
         Command::Quality(quality) => quality::run(quality),
         Command::Rules(rules) => rules::run(rules),
         Command::Demo(demo) => demo::run(demo),

@@ -21,6 +21,7 @@ mod limit;
 mod loop_surface;
 mod mesh;
 mod options;
+mod patches;
 mod query;
 #[cfg(test)]
 mod query_tests;
@@ -45,6 +46,7 @@ pub use job::*;
 pub use limit::*;
 pub use loop_surface::*;
 pub use mesh::*;
+pub use patches::*;
 pub use query::*;
 pub use refinement::*;
 pub use report::*;

@@ -10,7 +10,7 @@ use super::mesh::{WeltMesh, mesh_of};
 use super::report::{WeltReport, hand_over};
 use crate::fault;
 use crate::job::Job;
-use crate::mesh::{FaceId, VertexId};
+use crate::mesh::{FaceId, Mesh, VertexId};
 use crate::optimise::{self, Target};
 use crate::subdivision::SurfacePoint;
 
@@ -41,15 +41,8 @@ pub unsafe extern "C" fn welt_surface_create(
         // SAFETY: the header asks for a living mesh, an array of this count, a job or NULL and a place for the handle.
         let (mesh, job, output) =
             unsafe { (mesh_of(mesh)?, arguments::optional(job, "job")?, Output::new(surface, "surface")?) };
-        let faces: Vec<FaceId> = if faces.is_null() {
-            mesh.faces().collect()
-        } else {
-            // SAFETY: as above.
-            unsafe { arguments::array(faces, count, "faces") }?.iter().map(|&f| FaceId(f)).collect()
-        };
-        if let Some(missing) = faces.iter().find(|f| f.is_boundary() || !mesh.has_face(**f)) {
-            return Err(Failure::argument(format!("face {} does not exist", missing.0)));
-        }
+        // SAFETY: as above.
+        let faces = unsafe { faces_of(mesh, faces, count) }?;
         let idle = Job::new();
         let job = job.map_or(&idle, |job| &job.job);
         output.handle(WeltSurface { target: Target::freeze(mesh, &faces, job)? });
@@ -57,6 +50,23 @@ pub unsafe extern "C" fn welt_surface_create(
     };
     // SAFETY: the header asks for NULL or a place for an error.
     unsafe { boundary(error, body) }
+}
+
+/// The faces that a caller names; all where `faces` is NULL.
+///
+/// # Safety
+/// `faces` is NULL or the start of `count` elements.
+pub(super) unsafe fn faces_of(mesh: &Mesh, faces: *const u32, count: usize) -> Result<Vec<FaceId>, Failure> {
+    if faces.is_null() {
+        return Ok(mesh.faces().collect());
+    }
+    // SAFETY: as for this function.
+    let faces: Vec<FaceId> =
+        unsafe { arguments::array(faces, count, "faces") }?.iter().map(|&f| FaceId(f)).collect();
+    match faces.iter().find(|f| f.is_boundary() || !mesh.has_face(**f)) {
+        Some(missing) => Err(Failure::argument(format!("face {} does not exist", missing.0))),
+        None => Ok(faces),
+    }
 }
 
 /// Frees a surface. NULL is allowed. Since: 0.1.

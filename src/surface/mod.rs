@@ -24,6 +24,7 @@ mod line;
 mod line_piece;
 mod minimise;
 mod near;
+mod patches;
 mod places;
 mod quality;
 mod tree;
@@ -34,6 +35,7 @@ pub use closest::{ClosestOptions, Facing, Foot};
 pub use deviation::{Comparison, Deviation, DeviationSample, SAMPLES, Sampling, compare, deviation_samples};
 pub use kernel::Derivatives;
 pub use line::Hit;
+pub use patches::{PatchOptions, PatchReport, Patches, SplinePatch, SplinePoint};
 pub use quality::{ExtraordinaryVertex, FaceQuality, Quality};
 
 use crate::job::{Cancelled, Job};

@@ -83,6 +83,10 @@ static int32_t initialise_batch(void *options, size_t size) {
     return welt_batch_options_init((welt_batch_options *)options, size);
 }
 
+static int32_t initialise_patch(void *options, size_t size) {
+    return welt_patch_options_init((welt_patch_options *)options, size);
+}
+
 /* Whether a call accepts a struct whose first member is this size. */
 static int32_t use_import(const void *options) {
     welt_mesh *mesh = NULL;
@@ -116,6 +120,16 @@ static int32_t use_batch(const void *options) {
                                    NULL);
     check(fabs(position[0] - (status == WELT_OK ? 1.5 : -7.0)) < 1e-14, "a refused call writes nothing");
     welt_surface_free(surface);
+    welt_mesh_free(mesh);
+    return status;
+}
+
+static int32_t use_patch(const void *options) {
+    welt_mesh *mesh = sheet();
+    welt_patches *patches = NULL;
+    int32_t status = welt_patches_create(mesh, NULL, 0, (const welt_patch_options *)options, NULL, &patches, NULL);
+    check(welt_patches_count(patches) == (status == WELT_OK ? 1u : 0u), "a refused call makes nothing");
+    welt_patches_free(patches);
     welt_mesh_free(mesh);
     return status;
 }
@@ -269,6 +283,7 @@ int main(void) {
     sizes("welt_import_options_init", initialise_import, use_import, 16, sizeof(welt_import_options));
     sizes("welt_feature_options_init", initialise_feature, use_feature, 20, sizeof(welt_feature_options));
     sizes("welt_batch_options_init", initialise_batch, use_batch, sizeof(welt_batch_options), sizeof(welt_batch_options));
+    sizes("welt_patch_options_init", initialise_patch, use_patch, 16, sizeof(welt_patch_options));
     constants_that_do_not_exist();
     numbers_that_are_none(0);
     numbers_that_are_none(1);

@@ -179,6 +179,51 @@ void queries() {
     that(hits.points.at(0).distance < hits.points.at(1).distance && hits.points[0].normal[2] > 0.5, "in order");
 }
 
+// The limit of a flat sheet is the sheet: poles lie at the means of three successive knots.
+void patches() {
+    welt::Mesh const mesh = make_sheet();
+    std::vector<std::uint32_t> const middle = {14, 15, 20, 21};
+    welt::Patches const found = mesh.patches(middle);
+    that(found.count() == 1, "a rectangle of regular faces is one patch");
+    welt_patch const patch = found[0];
+    that(patch.face_count == 4 && std::equal(middle.begin(), middle.end(), patch.faces), "faces");
+    that(patch.degree_u == 3 && patch.degree_v == 3 && patch.pole_count_u == 5 && patch.pole_count_v == 5, "counts");
+    double const knots[] = {0, 0, 0, 0, 1, 2, 2, 2, 2};
+    that(std::equal(knots, knots + 9, patch.knots_u) && std::equal(knots, knots + 9, patch.knots_v), "knots");
+    for (std::uint32_t j = 0; j < 5; ++j)
+        for (std::uint32_t i = 0; i < 5; ++i) {
+            double const* const pole = patch.poles + 3 * (5 * j + i);
+            double const x = (knots[i + 1] + knots[i + 2] + knots[i + 3]) / 3;
+            double const y = (knots[j + 1] + knots[j + 2] + knots[j + 3]) / 3;
+            that(std::abs(pole[0] - 2 - x) < 1e-14 && std::abs(pole[1] - 2 - y) < 1e-14 && pole[2] == 0, "poles");
+        }
+    for (std::uint32_t edge = 0; edge < 4; ++edge)
+        that(patch.neighbours[edge] == WELT_NONE && patch.irregular[edge] == 0, "nothing lies beyond");
+    that(patch.deviation == 0, "it is exact");
+    that(found.report().json().find("\"exact\":1,") != std::string_view::npos, "report");
+
+    welt::PatchOptions options;
+    options.most_faces = 3;
+    welt::Patches const four = mesh.patches(options);
+    that(four.count() == 4, "long rectangles are cut");
+    std::size_t shared = 0;
+    for (std::size_t number = 0; number < four.count(); ++number)
+        for (std::uint32_t edge = 0; edge < 4; ++edge) {
+            std::uint32_t const beyond = four[number].neighbours[edge];
+            if (beyond == WELT_NONE) continue;
+            ++shared;
+            welt_patch const other = four[beyond];
+            that(other.neighbours[four[number].neighbour_sides[edge]] == number, "neighbours know each other");
+        }
+    that(shared == 8, "each patch has two neighbours");
+    failure(WELT_ERROR_ARGUMENT, [&] { four[4]; });
+    options.most_faces = 0;
+    failure(WELT_ERROR_ARGUMENT, [&] { mesh.patches(options); });
+    options.most_faces = 1;
+    options.tolerance = std::nan("");
+    failure(WELT_ERROR_ARGUMENT, [&] { mesh.patches(options); });
+}
+
 void features() {
     welt::Mesh mesh = make_sheet();
     welt::Selection const marks = mesh.select("ring:2,3");
@@ -254,6 +299,7 @@ int main() {
     options_and_files();
     surfaces();
     queries();
+    patches();
     features();
     jobs();
     return check::result();

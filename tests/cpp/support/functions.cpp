@@ -167,6 +167,13 @@ void surfaces() {
         w.out.points.data(), w.out.points.size(), &w.out.error});
     ADD(welt_surface_all_hits, "rrororo", {w.surface(), lines, 2, 0.0, HUGE_VAL, w.batch_options(), w.out.places.data(),
         &w.out.needed, w.out.points.data(), w.out.points.size(), &w.out.error});
+    ADD(welt_patch_options_init, "r", {w.patch_options(), sizeof(welt_patch_options)});
+    ADD(welt_patches_create, "roooro", {w.mesh(), some_faces, 2, w.patch_options(), w.job(), &w.out.patches,
+        &w.out.error});
+    ADD(welt_patches_free, "f", {take(w.patches())});
+    ADD(welt_patches_count, "o", {w.patches()});
+    ADD(welt_patches_get, "rro", {w.patches(), 0, &w.out.patch, &w.out.error});
+    ADD(welt_patches_report, "rro", {w.patches(), &w.out.report, &w.out.error});
     ADD(welt_mesh_deviation, "rrroo", {w.mesh(), w.second(), 2, w.out.doubles.data(), w.job(), &w.out.error});
 }
 

@@ -25,6 +25,7 @@ public:
     welt_surface*& surface();
     // Of the tetrahedron.
     welt_surface* closed();
+    welt_patches*& patches();
     welt_refinement*& refinement();
     welt_report*& report();
     welt_error*& failure();
@@ -32,6 +33,7 @@ public:
     welt_import_options* import_options();
     welt_feature_options* feature_options();
     welt_batch_options* batch_options();
+    welt_patch_options* patch_options();
 
     // All that a call may have changed, as bytes; reports are left out, since they have times.
     std::string content() const;
@@ -44,6 +46,7 @@ public:
         welt_selection* selection = nullptr;
         welt_rules* rules = nullptr;
         welt_surface* surface = nullptr;
+        welt_patches* patches = nullptr;
         welt_refinement* refinement = nullptr;
         welt_report* report = nullptr;
         welt_job* job = nullptr;
@@ -55,6 +58,7 @@ public:
         std::vector<std::size_t> places;
         std::vector<welt_surface_point> points;
         std::vector<char> text;
+        welt_patch patch = {};
         // No part of the content: a call that has too little room writes it as well.
         std::size_t needed = 0;
     } out;
@@ -70,6 +74,7 @@ private:
     welt_rules* rules_ = nullptr;
     welt_surface* surface_ = nullptr;
     welt_surface* closed_ = nullptr;
+    welt_patches* patches_ = nullptr;
     welt_refinement* refinement_ = nullptr;
     welt_report* report_ = nullptr;
     welt_error* failure_ = nullptr;
@@ -77,6 +82,7 @@ private:
     welt_import_options import_options_;
     welt_feature_options feature_options_;
     welt_batch_options batch_options_;
+    welt_patch_options patch_options_;
 };
 
 // How a call differs from one that succeeds.

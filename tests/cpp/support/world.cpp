@@ -59,6 +59,7 @@ World::World() : positions(sheet(0.2)), moved(sheet(0.1)), meshes_(3) {
     need(welt_feature_options_init(&feature_options_, sizeof feature_options_));
     feature_options_.deviation = 1;
     need(welt_batch_options_init(&batch_options_, sizeof batch_options_));
+    need(welt_patch_options_init(&patch_options_, sizeof patch_options_));
 }
 
 World::~World() {
@@ -67,6 +68,7 @@ World::~World() {
     for (welt_selection* selection : {selection_, out.selection}) welt_selection_free(selection);
     for (welt_rules* rules : {rules_, out.rules}) welt_rules_free(rules);
     for (welt_surface* surface : {surface_, closed_, out.surface}) welt_surface_free(surface);
+    for (welt_patches* patches : {patches_, out.patches}) welt_patches_free(patches);
     for (welt_refinement* refinement : {refinement_, out.refinement}) welt_refinement_free(refinement);
     for (welt_report* report : {report_, out.report}) welt_report_free(report);
     for (welt_job* job : {job_, out.job}) welt_job_free(job);
@@ -109,6 +111,11 @@ welt_surface* World::closed() {
     return closed_;
 }
 
+welt_patches*& World::patches() {
+    if (!patches_) need(welt_patches_create(second(), nullptr, 0, nullptr, nullptr, &patches_, nullptr));
+    return patches_;
+}
+
 welt_refinement*& World::refinement() {
     if (!refinement_) need(welt_refinement_create(mesh(), 1, nullptr, &refinement_, nullptr));
     return refinement_;
@@ -140,6 +147,7 @@ welt_job*& World::job() {
 welt_import_options* World::import_options() { return &import_options_; }
 welt_feature_options* World::feature_options() { return &feature_options_; }
 welt_batch_options* World::batch_options() { return &batch_options_; }
+welt_patch_options* World::patch_options() { return &patch_options_; }
 
 std::string content_of(welt_mesh const* mesh) {
     if (!mesh) return "none";
@@ -174,12 +182,13 @@ std::string World::content() const {
     bytes += "selection " + std::to_string(welt_selection_count(out.selection));
     bytes += "rules " + std::to_string(welt_rules_parameter_count(out.rules));
     bytes += "refinement " + std::to_string(welt_refinement_vertex_count(out.refinement, 1));
+    bytes += "patches " + std::to_string(welt_patches_count(out.patches)) + " " + std::to_string(out.patch.face_count);
     bytes += out.surface ? "surface" : "";
     bytes += out.job ? "job" : "";
     return bytes;
 }
 
 bool World::has_result() const {
-    return out.mesh || out.selection || out.rules || out.surface || out.refinement || out.report || out.job ||
-           out.doubles_view || out.integers_view;
+    return out.mesh || out.selection || out.rules || out.surface || out.patches || out.refinement || out.report || out.job ||
+           out.doubles_view || out.integers_view || out.patch.poles;
 }

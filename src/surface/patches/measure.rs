@@ -1,0 +1,146 @@
+//! How far patches are from the limit surface, and how their normals meet.
+
+use super::cells::Cell;
+use super::pieces::{Pieces, patch_of};
+use super::regions::Region;
+use super::spline::{SplinePatch, SplinePoint};
+use crate::mesh::{FaceId, Mesh};
+use crate::surface::LimitSurface;
+use glam::{DVec2, DVec3};
+
+/// Samples per side of a span beside an extraordinary vertex.
+const FINE: usize = 8;
+/// Samples per side of other spans.
+const COARSE: usize = 1;
+/// Steps towards the foot of a sample.
+const STEPS: usize = 3;
+
+/// Greatest distance of a patch to the surface, in units and in parts of the mean length of the control face's edges.
+#[derive(Clone, Copy, Default)]
+pub(super) struct Distance {
+    pub(super) absolute: f64,
+    pub(super) relative: f64,
+}
+
+/// Measures patches of a surface.
+pub(super) struct Ruler<'a> {
+    pub(super) mesh: &'a Mesh,
+    pub(super) surface: &'a LimitSurface,
+    pub(super) cells: &'a [Cell],
+}
+
+/// Which spans of a patch are measured.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(super) enum Spans {
+    All,
+    /// Those beside extraordinary vertices.
+    Last,
+}
+
+impl Ruler<'_> {
+    /// Measures a patch. Distances within rounding count as none.
+    pub(super) fn distance(
+        &self,
+        pieces: &mut Pieces,
+        region: &Region,
+        patch: &SplinePatch,
+        which: Spans,
+    ) -> Distance {
+        let mut worst = Distance::default();
+        let rounding = self.surface.tolerance.max(1e-13 * self.surface.size);
+        let (us, vs) = (spans(&patch.knots_u), spans(&patch.knots_v));
+        for (j, &[v0, v1]) in vs.iter().enumerate() {
+            for (i, &[u0, u1]) in us.iter().enumerate() {
+                let corners = [[0, 0], [us.len() - 1, 0], [us.len() - 1, vs.len() - 1], [0, vs.len() - 1]];
+                let last = corners.into_iter().zip(patch.irregular).any(|(at, last)| last && at == [i, j]);
+                if !last && which == Spans::Last {
+                    continue;
+                }
+                let count = if last { FINE } else { COARSE };
+                let place =
+                    |k: usize, low: f64, high: f64| low + (high - low) * (k as f64 + 0.5) / count as f64;
+                for k in 0..count * count {
+                    let at = DVec2::new(place(k % count, u0, u1), place(k / count, v0, v1));
+                    let Some(found) = patch.evaluate(at.x, at.y) else { continue };
+                    let far = self.foot_distance(pieces, region, at, found.position);
+                    if far > rounding {
+                        let (base, _) = patch_of(self.cells, region, at);
+                        let length = edge_length(self.mesh, self.surface.places[base].face);
+                        worst.absolute = worst.absolute.max(far);
+                        worst.relative = worst.relative.max(far / length);
+                    }
+                }
+            }
+        }
+        worst
+    }
+
+    /// Distance of `point` to the surface near `at` in a region: never less than that to the closest point.
+    fn foot_distance(&self, pieces: &mut Pieces, region: &Region, mut at: DVec2, point: DVec3) -> f64 {
+        let mut nearest = f64::INFINITY;
+        for _ in 0..STEPS {
+            let Some(here) = pieces.point(self.cells, region, at) else { break };
+            let offset = point - here.position;
+            nearest = nearest.min(offset.length());
+            if nearest <= self.surface.tolerance {
+                break;
+            }
+            let (uu, uv, vv) = (here.du.length_squared(), here.du.dot(here.dv), here.dv.length_squared());
+            let (a, b) = (offset.dot(here.du), offset.dot(here.dv));
+            let determinant = uu * vv - uv * uv;
+            if determinant <= 1e-12 * uu * vv {
+                break;
+            }
+            let step = DVec2::new(vv * a - uv * b, uu * b - uv * a) / determinant;
+            let end = DVec2::new(region.size[0] as f64, region.size[1] as f64);
+            at = (at + step).clamp(DVec2::ZERO, end);
+        }
+        nearest
+    }
+}
+
+/// The spans of flat knots.
+fn spans(knots: &[f64]) -> Vec<[f64; 2]> {
+    knots.windows(2).filter(|pair| pair[0] < pair[1]).map(|pair| [pair[0], pair[1]]).collect()
+}
+
+fn edge_length(mesh: &Mesh, face: FaceId) -> f64 {
+    let (sum, count) = mesh
+        .face_half_edges(face)
+        .fold((0.0, 0.0), |(sum, count), h| (sum + mesh.edge_length(h), count + 1.0));
+    (sum / count).max(f64::MIN_POSITIVE)
+}
+
+/// Greatest angle in degrees between the normals of two patches along a shared side.
+pub(super) fn normal_jump(patch: &SplinePatch, side: usize, other: &SplinePatch, there: usize) -> f64 {
+    let own = if side % 2 == 0 { &patch.knots_u } else { &patch.knots_v };
+    let length = own.last().copied().unwrap_or(0.0);
+    let mut worst: f64 = 0.0;
+    for [low, high] in spans(own) {
+        for share in [0.0, 0.25, 0.5, 0.75, 1.0] {
+            let t = low + share * (high - low);
+            // Sides 2 and 3 run against the parameter, and the other patch has the side in the opposite sense.
+            let along = if side < 2 { t } else { length - t };
+            let normal =
+                |found: Option<SplinePoint>| found.and_then(|found| found.du.cross(found.dv).try_normalize());
+            let normals =
+                (normal(at_side(patch, side, along)), normal(at_side(other, there, length - along)));
+            if let (Some(a), Some(b)) = normals {
+                worst = worst.max(a.cross(b).length().atan2(a.dot(b)).to_degrees());
+            }
+        }
+    }
+    worst
+}
+
+/// The patch at the distance `along` from the start of a side, counter-clockwise.
+fn at_side(patch: &SplinePatch, side: usize, along: f64) -> Option<SplinePoint> {
+    let (u, v) = (*patch.knots_u.last()?, *patch.knots_v.last()?);
+    let (u, v) = match side {
+        0 => (along, 0.0),
+        1 => (u, along),
+        2 => (u - along, v),
+        _ => (0.0, v - along),
+    };
+    patch.evaluate(u, v)
+}
