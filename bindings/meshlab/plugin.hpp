@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The plugin class, once for each interface of MeshLab. Both pass everything on to Filters; the second one is compiled
+// against the headers of 2022.02 by tests/meshlab/run where they can be had, and has not been run.
+#pragma once
+
+#include "filter_welt.hpp"
+
+#include <exception>
+#include <string>
+
+#ifdef WELT_MESHLAB_2020
+
+class WeltPlugin : public QObject, public MeshFilterInterface {
+    Q_OBJECT
+    MESHLAB_PLUGIN_IID_EXPORTER(MESH_FILTER_INTERFACE_IID)
+    Q_INTERFACES(MeshFilterInterface)
+
+public:
+    WeltPlugin() {
+        for (int id = 0; id < filters_.count(); ++id) {
+            typeList << id;
+            actionList << new QAction(filters_.name(id), this);
+        }
+    }
+    QString pluginName() const override { return "FilterWelt"; }
+    QString filterName(FilterIDType id) const override { return filters_.name(id); }
+    QString filterInfo(FilterIDType id) const override { return filters_.info(id); }
+    FilterClass getClass(QAction* action) override { return filters_.measures(ID(action)) ? Quality : Polygonal; }
+    int getPreConditions(QAction*) const override { return MeshModel::MM_FACENUMBER; }
+    int postCondition(QAction*) const override { return MeshModel::MM_GEOMETRY_AND_TOPOLOGY_CHANGE; }
+    FILTER_ARITY filterArity(QAction* action) const override { return filters_.measures(ID(action)) ? FIXED : SINGLE_MESH; }
+    void initParameterSet(QAction* action, MeshDocument& document, RichParameterList& list) override {
+        filters_.parameters(ID(action), document, list);
+    }
+    bool applyFilter(QAction* action, MeshDocument& document, RichParameterList const& parameters,
+                     vcg::CallBackPos* progress) override {
+        try {
+            Log(filters_.apply(ID(action), parameters, document, progress));
+            return true;
+        } catch (std::exception const& error) {
+            // meshlabserver shows the log only, the desktop shows both.
+            errorMessage = QString::fromUtf8(error.what());
+            Log(GLLogStream::WARNING, std::string(error.what()));
+            return false;
+        }
+    }
+
+private:
+    Filters filters_;
+};
+
+#else
+
+class WeltPlugin : public QObject, public FilterPlugin {
+    Q_OBJECT
+    MESHLAB_PLUGIN_IID_EXPORTER(FILTER_PLUGIN_IID)
+    Q_INTERFACES(FilterPlugin)
+
+public:
+    WeltPlugin() {
+        for (int id = 0; id < filters_.count(); ++id) {
+            typeList.push_back(id);
+            actionList.push_back(new QAction(filters_.name(id), this));
+        }
+    }
+    QString pluginName() const override { return "FilterWelt"; }
+    QString vendor() const override { return "welt"; }
+    QString filterName(ActionIDType id) const override { return filters_.name(id); }
+    QString filterInfo(ActionIDType id) const override { return filters_.info(id); }
+    FilterClass getClass(QAction const* action) const override {
+        return filters_.measures(ID(action)) ? FilterPlugin::Quality : FilterPlugin::Polygonal;
+    }
+    int getPreConditions(QAction const*) const override { return MeshModel::MM_FACENUMBER; }
+    int postCondition(QAction const*) const override { return MeshModel::MM_GEOMETRY_AND_TOPOLOGY_CHANGE; }
+    FilterArity filterArity(QAction const* action) const override { return filters_.measures(ID(action)) ? FIXED : SINGLE_MESH; }
+    RichParameterList initParameterList(QAction const* action, MeshDocument const& document) override {
+        RichParameterList list;
+        filters_.parameters(ID(action), document, list);
+        return list;
+    }
+    std::map<std::string, QVariant> applyFilter(QAction const* action, RichParameterList const& parameters,
+                                                MeshDocument& document, unsigned int&, vcg::CallBackPos* progress) override {
+        try {
+            log(filters_.apply(ID(action), parameters, document, progress));
+            return {};
+        } catch (std::exception const& error) {
+            throw MLException(QString::fromUtf8(error.what()));
+        }
+    }
+
+private:
+    Filters filters_;
+};
+
+#endif
