@@ -52,12 +52,15 @@ std::runtime_error explained(welt::Error const& error) {
     std::string message = error.what();
     for (std::size_t i = 0; i < std::min(most, error.places().size()); ++i) {
         welt::Place const& place = error.places()[i];
-        message += "\n  ";
-        if (place.line > 0)
-            message += place.file + ":" + std::to_string(place.line) + ":" + std::to_string(place.column) + ": ";
-        message += place.message;
+        std::string at;
+        if (place.line > 0) at = place.file + ":" + std::to_string(place.line) + ":" + std::to_string(place.column) + ": ";
+        if (at.empty() && place.message == error.what()) continue;
+        message += "\n  " + at + place.message;
     }
     if (error.places().size() > most) message += "\n  and " + std::to_string(error.places().size() - most) + " more";
+    if (error.code() == WELT_ERROR_MESH)
+        message += "\nFaces are polygons here, counted from 0. Filters, Cleaning and Repairing mends them, for example 'Repair non "
+                   "Manifold Edges by removing faces' and 'Re-Orient all faces coherently'.";
     return std::runtime_error(message);
 }
 
@@ -340,8 +343,9 @@ QString Filters::info(int id) const {
                    "to blue." +
                    polygons;
     }
-    return "Puts " + features_[id].toObject()["help"].toString() +
-           " across the marked edges. The limit surface stays where it was elsewhere, and the mesh becomes hardly denser." +
+    QJsonObject const feature = features_[id].toObject();
+    return "<b>" + feature["name"].toString() + "</b>: " + feature["help"].toString() +
+           ". It crosses the marked edges; the limit surface stays where it was elsewhere, and the mesh becomes hardly denser." +
            polygons + " Lengths are in the unit of the model, or like 30% of the length of the marked edge.";
 }
 

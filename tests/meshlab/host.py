@@ -139,7 +139,7 @@ def meshlab(filters, inputs, output=None):
         for path in inputs:
             command += ["-i", str(path)]
         if output:
-            command += ["-o", str(output), "-m", "ff", "vf", "sa", "vq"]
+            command += ["-o", str(output), "-m", "ff", "vf", "vq"]
         command += ["-s", script.name]
         done = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, timeout=60, check=False)
         return done.returncode, re.sub(r"\x1b\[[0-9;]*m", "", done.stdout.decode(errors="replace"))
