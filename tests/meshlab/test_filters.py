@@ -161,7 +161,7 @@ class Filters(unittest.TestCase):
         # Of a groove of known depth from the cage without it.
         write_ply(self.cage, *tube())
         lengths = {"width": "0.3", "depth": "0.05"}
-        self.run_filter(feature("Welt: Groove", lengths, selectors="ring:6,12"))
+        self.run_filter(feature("Welt: Groove", lengths, selectors="ring:6,12", polygon_file=self.obj))
         grooved = self.folder / "grooved.ply"
         self.out.rename(grooved)
         text = self.run_filter(
@@ -170,10 +170,11 @@ class Filters(unittest.TestCase):
         quality = read_ply(self.out)[1]
         self.assertAlmostEqual(min(quality), -0.05, delta=0.001)
         self.assertLess(max(quality), 0.01)
-        both = json.loads(welt("deviation", self.cage, grooved, "--json"))["both"]
+        both = json.loads(welt("deviation", self.cage, self.obj, "--json"))["both"]
         told = re.search(r"max (\S+), rms (\S+), 95 % within (\S+);", text)
         for found, key in zip(told.groups(), ("max", "rms", "p95")):
-            self.assertAlmostEqual(float(found), both[key], delta=1e-5 * both[key])
+            # The layer has single precision.
+            self.assertAlmostEqual(float(found), both[key], delta=1e-4 * both[key])
 
 
 class Failures(unittest.TestCase):
