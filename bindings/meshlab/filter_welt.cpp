@@ -16,7 +16,7 @@
 namespace {
 
 // After the features.
-enum Further { CustomRules, LimitSurface, Deviation, HowManyFurther };
+enum Further { CustomRules, LimitSurface, Deviation, OpenControlMesh, HowManyFurther };
 enum Marks { SelectedVertices, SelectedFaces, SelectedEdges, SelectedRings, Selectors };
 
 QJsonArray array_of(welt::Report const& report) {
@@ -205,6 +205,16 @@ std::string make_limit_surface(RichParameterList const& parameters, MeshDocument
     return "limit surface: " + std::to_string(dense.positions.size()) + " vertices in a new layer";
 }
 
+std::string open_control_mesh(RichParameterList const& parameters, MeshDocument& document) {
+    QString const file = parameters.getOpenFileName("file");
+    if (file.isEmpty()) throw std::runtime_error("no file is named: set file to an OBJ or PLY file");
+    welt::Mesh const mesh = welt::Mesh::import_file(file.toStdString());
+    welt::Mesh::Faces const faces = mesh.faces();
+    MeshModel* made = document.addNewMesh("", QFileInfo(file).fileName(), true);
+    write_back(*made, mesh.positions(), faces.sizes, faces.vertices);
+    return std::to_string(mesh.vertex_count()) + " vertices, " + std::to_string(mesh.face_count()) + " polygons";
+}
+
 // The polygons of a layer where the document shows them.
 PolygonMesh placed(MeshModel& layer) {
     PolygonMesh polygons = polygons_of(layer.cm);
@@ -316,13 +326,20 @@ Filters::Filters() {
 
 int Filters::count() const { return features_.size() + HowManyFurther; }
 
-bool Filters::measures(int id) const { return id == features_.size() + Deviation; }
+Filters::Kind Filters::kind(int id) const {
+    switch (id - features_.size()) {
+        case Deviation: return Measures;
+        case OpenControlMesh: return Opens;
+        default: return Changes;
+    }
+}
 
 QString Filters::name(int id) const {
     switch (id - features_.size()) {
         case CustomRules: return "Welt: Custom Rules";
         case LimitSurface: return "Welt: Limit Surface";
         case Deviation: return "Welt: Deviation";
+        case OpenControlMesh: return "Welt: Open Control Mesh";
     }
     QString const feature = features_[id].toObject()["name"].toString();
     return "Welt: " + feature.left(1).toUpper() + feature.mid(1);
@@ -342,6 +359,9 @@ QString Filters::info(int id) const {
                    "distance to the limit surface of another layer: negative inside of it, positive outside, coloured from red "
                    "to blue." +
                    polygons;
+        case OpenControlMesh:
+            return "Makes a new layer of a file, OBJ or PLY, whose polygons stay polygons, as the other filters of welt need "
+                   "them. MeshLab 2020.09 itself cannot read quads from OBJ.";
     }
     QJsonObject const feature = features_[id].toObject();
     return "<b>" + feature["name"].toString() + "</b>: " + feature["help"].toString() +
@@ -360,6 +380,9 @@ void Filters::parameters(int id, MeshDocument const& document, RichParameterList
                                           "The layer with the control mesh that the current one is compared with."));
             add_level(list, 2);
             add_boundary(list);
+            return;
+        case OpenControlMesh:
+            list.addParam(RichOpenFile("file", "", QStringList("Control meshes (*.obj *.ply)"), "File", "The file to open."));
             return;
         case CustomRules:
             list.addParam(RichOpenFile("rules", "", QStringList("Rules (*.rules)"), "Rule file", "The rules to run."));
@@ -383,12 +406,14 @@ void Filters::parameters(int id, MeshDocument const& document, RichParameterList
 
 std::string Filters::apply(int id, RichParameterList const& parameters, MeshDocument& document,
                            vcg::CallBackPos* progress) const {
-    if (!document.mm() || document.mm()->cm.fn == 0) throw std::runtime_error("the layer has no faces: open a control mesh");
+    if (kind(id) != Opens && (!document.mm() || document.mm()->cm.fn == 0))
+        throw std::runtime_error("the layer has no faces: choose one that is a control mesh");
     Progress watched(progress);
     try {
         switch (id - features_.size()) {
             case LimitSurface: return make_limit_surface(parameters, document, watched.job());
             case Deviation: return measure_deviation(parameters, document, watched.job());
+            case OpenControlMesh: return open_control_mesh(parameters, document);
             case CustomRules: return apply_feature("", {}, parameters, *document.mm(), watched.job());
         }
         QJsonObject const feature = features_[id].toObject();

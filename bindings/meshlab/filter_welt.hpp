@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What the plugin offers, apart from the interface of the host: one filter per feature of the library, then custom rules,
-// limit surface and deviation.
+// limit surface, deviation and opening files.
 #pragma once
 
 #include "host.hpp"
@@ -19,8 +19,9 @@ public:
     QString name(int id) const;
     // What the filter does, as HTML.
     QString info(int id) const;
-    // Whether the filter compares two layers.
-    bool measures(int id) const;
+    // What the filter works on: the current layer, two layers, none.
+    enum Kind { Changes, Measures, Opens };
+    Kind kind(int id) const;
 
     void parameters(int id, MeshDocument const& document, RichParameterList& list) const;
     // Runs a filter on the current layer and gives the lines for the log. Throws std::exception with a message for the user;

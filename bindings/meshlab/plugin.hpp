@@ -25,10 +25,18 @@ public:
     QString pluginName() const override { return "FilterWelt"; }
     QString filterName(FilterIDType id) const override { return filters_.name(id); }
     QString filterInfo(FilterIDType id) const override { return filters_.info(id); }
-    FilterClass getClass(QAction* action) override { return filters_.measures(ID(action)) ? Quality : Polygonal; }
-    int getPreConditions(QAction*) const override { return MeshModel::MM_FACENUMBER; }
+    FilterClass getClass(QAction* action) override {
+        static constexpr FilterClass classes[] = {Polygonal, Quality, MeshCreation};
+        return classes[filters_.kind(ID(action))];
+    }
+    int getPreConditions(QAction* action) const override {
+        return filters_.kind(ID(action)) == Filters::Opens ? MeshModel::MM_NONE : MeshModel::MM_FACENUMBER;
+    }
     int postCondition(QAction*) const override { return MeshModel::MM_GEOMETRY_AND_TOPOLOGY_CHANGE; }
-    FILTER_ARITY filterArity(QAction* action) const override { return filters_.measures(ID(action)) ? FIXED : SINGLE_MESH; }
+    FILTER_ARITY filterArity(QAction* action) const override {
+        static constexpr FILTER_ARITY arities[] = {SINGLE_MESH, FIXED, NONE};
+        return arities[filters_.kind(ID(action))];
+    }
     void initParameterSet(QAction* action, MeshDocument& document, RichParameterList& list) override {
         filters_.parameters(ID(action), document, list);
     }
@@ -68,11 +76,17 @@ public:
     QString filterName(ActionIDType id) const override { return filters_.name(id); }
     QString filterInfo(ActionIDType id) const override { return filters_.info(id); }
     FilterClass getClass(QAction const* action) const override {
-        return filters_.measures(ID(action)) ? FilterPlugin::Quality : FilterPlugin::Polygonal;
+        static constexpr FilterClass classes[] = {Polygonal, Quality, MeshCreation};
+        return classes[filters_.kind(ID(action))];
     }
-    int getPreConditions(QAction const*) const override { return MeshModel::MM_FACENUMBER; }
+    int getPreConditions(QAction const* action) const override {
+        return filters_.kind(ID(action)) == Filters::Opens ? MeshModel::MM_NONE : MeshModel::MM_FACENUMBER;
+    }
     int postCondition(QAction const*) const override { return MeshModel::MM_GEOMETRY_AND_TOPOLOGY_CHANGE; }
-    FilterArity filterArity(QAction const* action) const override { return filters_.measures(ID(action)) ? FIXED : SINGLE_MESH; }
+    FilterArity filterArity(QAction const* action) const override {
+        static constexpr FilterArity arities[] = {SINGLE_MESH, FIXED, NONE};
+        return arities[filters_.kind(ID(action))];
+    }
     RichParameterList initParameterList(QAction const* action, MeshDocument const& document) override {
         RichParameterList list;
         filters_.parameters(ID(action), document, list);

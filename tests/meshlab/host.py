@@ -110,6 +110,10 @@ def enum(name, value, count):
     return parameter("Enum", name, value, enum_cardinality=count, **{f"enum_val{i}": i for i in range(count)})
 
 
+def open_file(name, path):
+    return parameter("OpenFile", name, path, exts_cardinality=1, ext_val0="*")
+
+
 def feature(name, lengths, marks="selectors", selectors="", polygon_file="", strict=False, before=()):
     """The filter of a feature: lengths are the texts of its parameters in their order, before what stands in front of them."""
     parameters = list(before)

@@ -7,7 +7,7 @@ import tempfile
 import unittest
 from pathlib import Path
 
-from host import LEAF_CHAIR, ROOT, feature, enum, meshlab, parameter, read_obj, read_ply, welt, write_ply
+from host import LEAF_CHAIR, ROOT, feature, enum, meshlab, open_file, parameter, read_obj, read_ply, welt, write_ply
 
 GROOVE = {"width": "1.6", "depth": "0.6"}
 RING = "ring:3,331"
@@ -142,8 +142,7 @@ class Filters(unittest.TestCase):
     def test_custom_rules(self):
         write_ply(self.cage, *tube())
         rules = ROOT / "rules/linear.rules"
-        start = [parameter("OpenFile", "rules", rules, exts_cardinality=1, ext_val0="Rules (*.rules)"),
-                 parameter("String", "settings", "")]
+        start = [open_file("rules", rules), parameter("String", "settings", "")]
         self.run_filter(feature("Welt: Custom Rules", {}, selectors="ring:6,12", polygon_file=self.obj, before=start))
         welt("apply", self.cage, "-o", self.expected, "--rules", rules, "--mark", "ring:6,12")
         self.assert_as_expected()
@@ -156,6 +155,14 @@ class Filters(unittest.TestCase):
         found, _, polygons = read_ply(self.out)
         self.assertEqual(polygons, faces)
         self.assertLess(max(abs(a - b) for p, q in zip(positions, found) for a, b in zip(p, q)), 1e-6)
+
+    def test_open_control_mesh(self):
+        write_ply(self.cage, *tube())
+        start = ("Welt: Open Control Mesh", [open_file("file", LEAF_CHAIR)])
+        self.run_filter(start, feature("Welt: Groove", GROOVE, selectors=RING, polygon_file=self.obj))
+        write_ply(self.cage, *self.chair)
+        self.apply("groove", GROOVE, RING)
+        self.assert_as_expected()
 
     def test_deviation(self):
         # Of a groove of known depth from the cage without it.
@@ -230,12 +237,14 @@ class Failures(unittest.TestCase):
                    "vertex 99 does not exist; the mesh has vertices 0 to 23")
 
     def test_a_rule_file_that_is_not_there(self):
-        start = [parameter("OpenFile", "rules", "/nowhere/my.rules", exts_cardinality=1, ext_val0="*.rules"),
-                 parameter("String", "settings", "")]
+        start = [open_file("rules", "/nowhere/my.rules"), parameter("String", "settings", "")]
         self.fails(tube(), feature("Welt: Custom Rules", {}, selectors="ring:6,12", before=start), "/nowhere/my.rules")
 
+    def test_a_control_mesh_that_is_not_there(self):
+        self.fails(tube(), ("Welt: Open Control Mesh", [open_file("file", "/nowhere/chair.obj")]), "/nowhere/chair.obj")
+
     def test_no_rule_file(self):
-        start = [parameter("OpenFile", "rules", "", exts_cardinality=1, ext_val0="*.rules"), parameter("String", "settings", "")]
+        start = [open_file("rules", ""), parameter("String", "settings", "")]
         self.fails(tube(), feature("Welt: Custom Rules", {}, selectors="ring:6,12", before=start), "no rule file is named")
 
     def test_a_polygon_file_that_cannot_be_written(self):
