@@ -6,6 +6,11 @@
 
 #include <welt.hpp>
 
+#include <vcg/complex/algorithms/update/bounding.h>
+#include <vcg/complex/algorithms/update/normal.h>
+#include <vcg/complex/algorithms/update/selection.h>
+
+#include <algorithm>
 #include <cstdint>
 #include <numeric>
 #include <set>
@@ -152,5 +157,7 @@ inline void write_back(MeshModel& layer, welt::View<welt::Vector> positions, wel
         v += size;
     }
     if (polygonal) layer.updateDataMask(MeshModel::MM_POLYGONAL);
-    layer.UpdateBoxAndNormals();
+    vcg::tri::UpdateBounding<CMeshO>::Box(cm);
+    vcg::tri::UpdateNormal<CMeshO>::PerFaceNormalized(cm);
+    vcg::tri::UpdateNormal<CMeshO>::PerVertexAngleWeighted(cm);
 }
