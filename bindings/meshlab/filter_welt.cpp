@@ -171,7 +171,7 @@ std::string apply_feature(QString const& feature, QJsonArray const& settable, Ri
     std::optional<welt::Report> report;
     if (feature.isEmpty()) {
         QString const file = parameters.getOpenFileName("rules");
-        if (file.isEmpty()) throw std::runtime_error("no rule file is named: set rules to a .rules file");
+        if (file.isEmpty()) throw std::runtime_error("no rule file is named: choose a .rules file with the button");
         report = mesh.apply(marks, welt::Rules::load(file.toStdString()), parameters.getString("settings").toStdString(),
                             options, job);
     } else {
@@ -191,7 +191,7 @@ std::string apply_feature(QString const& feature, QJsonArray const& settable, Ri
     bool const more = layer.hasDataMask(MeshModel::MM_WEDGTEXCOORD) || layer.hasDataMask(MeshModel::MM_FACECOLOR) ||
                       layer.hasDataMask(MeshModel::MM_FACEQUALITY);
     welt::Mesh::Faces const faces = mesh.faces();
-    write_back(layer, mesh.positions(), faces.sizes, faces.vertices);
+    write_back(layer, mesh.positions(), faces.sizes, faces.vertices, true);
     return summary(mesh, marks.count(), *report) + (more ? "\ntexture coordinates, colour and quality of faces are gone" : "");
 }
 
@@ -200,18 +200,18 @@ std::string make_limit_surface(RichParameterList const& parameters, MeshDocument
     Dense const dense = limit_of(mesh_of(polygons_of(layer.cm), parameters), parameters, job);
     auto const transform = layer.cm.Tr;
     MeshModel* made = document.addNewMesh("", "limit surface of " + layer.label(), true);
-    write_back(*made, dense.positions, dense.sizes, dense.vertices);
+    write_back(*made, dense.positions, dense.sizes, dense.vertices, false);
     made->cm.Tr = transform;
     return "limit surface: " + std::to_string(dense.positions.size()) + " vertices in a new layer";
 }
 
 std::string open_control_mesh(RichParameterList const& parameters, MeshDocument& document) {
     QString const file = parameters.getOpenFileName("file");
-    if (file.isEmpty()) throw std::runtime_error("no file is named: set file to an OBJ or PLY file");
+    if (file.isEmpty()) throw std::runtime_error("no file is named: choose an OBJ or PLY file with the button");
     welt::Mesh const mesh = welt::Mesh::import_file(file.toStdString());
     welt::Mesh::Faces const faces = mesh.faces();
     MeshModel* made = document.addNewMesh("", QFileInfo(file).fileName(), true);
-    write_back(*made, mesh.positions(), faces.sizes, faces.vertices);
+    write_back(*made, mesh.positions(), faces.sizes, faces.vertices, true);
     return std::to_string(mesh.vertex_count()) + " vertices, " + std::to_string(mesh.face_count()) + " polygons";
 }
 
@@ -240,7 +240,7 @@ std::string measure_deviation(RichParameterList const& parameters, MeshDocument&
     std::vector<welt_surface_point> const closest = reference.freeze().closest(dense.positions);
 
     MeshModel* made = document.addNewMesh("", "deviation of " + layer.label(), true);
-    write_back(*made, dense.positions, dense.sizes, dense.vertices);
+    write_back(*made, dense.positions, dense.sizes, dense.vertices, false);
     made->updateDataMask(MeshModel::MM_VERTQUALITY | MeshModel::MM_VERTCOLOR);
     float largest = 0;
     for (std::size_t i = 0; i < closest.size(); ++i) {
@@ -311,7 +311,7 @@ void add_options(RichParameterList& list) {
     add_boundary(list);
     list.addParam(RichSaveFile("polygons", "", "OBJ (*.obj)", "Polygon file",
                                "Where to write the new mesh as polygons, in OBJ or PLY. MeshLab's own OBJ has triangles only. "
-                               "Empty: nowhere."));
+                               "Empty: nowhere. Choose it with the button: what is typed here MeshLab passes over."));
 }
 
 }  // namespace
@@ -382,10 +382,12 @@ void Filters::parameters(int id, MeshDocument const& document, RichParameterList
             add_boundary(list);
             return;
         case OpenControlMesh:
-            list.addParam(RichOpenFile("file", "", QStringList("Control meshes (*.obj *.ply)"), "File", "The file to open."));
+            list.addParam(RichOpenFile("file", "", QStringList("Control meshes (*.obj *.ply)"), "File",
+                                        "The file to open. Choose it with the button: what is typed here MeshLab passes over."));
             return;
         case CustomRules:
-            list.addParam(RichOpenFile("rules", "", QStringList("Rules (*.rules)"), "Rule file", "The rules to run."));
+            list.addParam(RichOpenFile("rules", "", QStringList("Rules (*.rules)"), "Rule file",
+                                        "The rules to run. Choose the file with the button: what is typed here MeshLab passes over."));
             list.addParam(RichString("settings", "", "Settings", "NAME=NUMBER for parameters of the rules, separated by blanks."));
             break;
         default:

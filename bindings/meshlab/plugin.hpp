@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The plugin class, once for each interface of MeshLab. Both pass everything on to Filters; the second one is compiled
-// against the headers of 2022.02 by tests/meshlab/run where they can be had, and has not been run.
+// The plugin class, once for each interface of MeshLab. Both pass everything on to Filters. The first one is what the tests
+// run; the second one, for 2021.05 and newer, was tried by hand in PyMeshLab 2022.2, built with the headers of 2022.02.
 #pragma once
 
 #include "filter_welt.hpp"

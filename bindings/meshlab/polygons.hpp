@@ -121,9 +121,9 @@ inline PolygonMesh polygons_of(CMeshO& cm) {
 }
 
 // Gives a layer other faces and positions. Its vertices keep their numbers and what is stored on them, new ones follow;
-// what is stored on faces is gone with the faces.
+// what is stored on faces is gone with the faces. edges: whether MeshLab shows the edges of the polygons.
 inline void write_back(MeshModel& layer, welt::View<welt::Vector> positions, welt::View<std::uint32_t> sizes,
-                       welt::View<std::uint32_t> vertices) {
+                       welt::View<std::uint32_t> vertices, bool edges) {
     using Allocator = vcg::tri::Allocator<CMeshO>;
     CMeshO& cm = layer.cm;
     layer.clearDataMask(MeshModel::MM_FACEFACETOPO | MeshModel::MM_VERTFACETOPO | MeshModel::MM_WEDGTEXCOORD |
@@ -136,10 +136,8 @@ inline void write_back(MeshModel& layer, welt::View<welt::Vector> positions, wel
         cm.vert[i].P() = CMeshO::CoordType(CMeshO::ScalarType(positions[i][0]), CMeshO::ScalarType(positions[i][1]),
                                            CMeshO::ScalarType(positions[i][2]));
 
-    bool polygonal = false;
     std::uint32_t const* v = vertices.begin();
     for (std::uint32_t const size : sizes) {
-        polygonal = polygonal || size > 3;
         auto const triangle = [&](std::uint32_t a, std::uint32_t b, std::uint32_t c) -> CMeshO::FaceType& {
             return *Allocator::AddFace(cm, v[a], v[b], v[c]);
         };
@@ -156,7 +154,7 @@ inline void write_back(MeshModel& layer, welt::View<welt::Vector> positions, wel
         }
         v += size;
     }
-    if (polygonal) layer.updateDataMask(MeshModel::MM_POLYGONAL);
+    if (edges) layer.updateDataMask(MeshModel::MM_POLYGONAL);
     vcg::tri::UpdateBounding<CMeshO>::Box(cm);
     vcg::tri::UpdateNormal<CMeshO>::PerFaceNormalized(cm);
     vcg::tri::UpdateNormal<CMeshO>::PerVertexAngleWeighted(cm);
