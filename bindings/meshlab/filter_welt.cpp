@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The filters: what they are called, what can be set, what they do.
 #include "filter_welt.hpp"
+#include "marks.hpp"
 #include "plugin.hpp"
 #include "polygons.hpp"
 
@@ -17,7 +18,6 @@ namespace {
 
 // After the features.
 enum Further { CustomRules, LimitSurface, Deviation, OpenControlMesh, HowManyFurther };
-enum Marks { SelectedVertices, SelectedFaces, SelectedEdges, SelectedRings, Selectors };
 
 QJsonArray array_of(welt::Report const& report) {
     return QJsonDocument::fromJson(QByteArray(report.json().data(), int(report.json().size()))).array();
@@ -71,48 +71,6 @@ welt::Mesh mesh_of(PolygonMesh const& polygons, RichParameterList const& paramet
     if (boundary < 0 || boundary > 2) throw std::runtime_error("boundary is 0, 1 or 2");
     mesh.set_subdivision(boundaries[boundary], WELT_CREASING_UNIFORM);
     return mesh;
-}
-
-// The marked edges.
-welt::Selection marks_of(welt::Mesh const& mesh, PolygonMesh const& polygons, RichParameterList const& parameters) {
-    auto const list = [](std::set<std::uint32_t> const& vertices) {
-        std::string text;
-        for (std::uint32_t const vertex : vertices) text += (text.empty() ? "cut:" : ",") + std::to_string(vertex);
-        return text;
-    };
-    std::string text;
-    char const* what = "vertices";
-    int const marks = parameters.getEnum("marks");
-    switch (marks) {
-        case SelectedVertices: text = list(polygons.selected); break;
-        case SelectedFaces:
-            text = list(polygons.of_selected_faces);
-            what = "faces";
-            break;
-        case SelectedEdges:
-        case SelectedRings: {
-            what = "edges";
-            std::set<std::pair<std::uint32_t, std::uint32_t>> covered;
-            for (auto const& edge : polygons.selected_edges) {
-                if (covered.count(edge)) continue;
-                std::string const ends = std::to_string(edge.first) + "," + std::to_string(edge.second);
-                if (marks == SelectedRings) {
-                    auto const ring = mesh.select("ring:" + ends).edges(mesh).vertices;
-                    for (std::size_t i = 0; i + 1 < ring.size(); i += 2) covered.insert(std::minmax(ring[i], ring[i + 1]));
-                }
-                text += (marks == SelectedRings ? " ring:" : " edge:") + ends;
-            }
-            break;
-        }
-        case Selectors:
-            text = parameters.getString("selectors").trimmed().toStdString();
-            if (text.empty()) throw std::runtime_error("selectors is empty: name edges, for example by ring:3,331");
-            break;
-        default: throw std::runtime_error("marks is a number from 0 to 4");
-    }
-    if (text.empty())
-        throw std::runtime_error(std::string("no ") + what + " are selected: select some, or set marks to what is selected");
-    return mesh.select(text);
 }
 
 // What of the report a user looks for.
@@ -238,6 +196,9 @@ std::string measure_deviation(RichParameterList const& parameters, MeshDocument&
     Dense const dense = limit_of(mesh, parameters, nullptr);
     welt::Mesh::Deviation const both = mesh.deviation(reference, 8, job);
     std::vector<welt_surface_point> const closest = reference.freeze().closest(dense.positions);
+    for (welt_surface_point const& point : closest)
+        if (point.face == WELT_NONE)
+            throw std::runtime_error("the reference has no limit surface: it has no faces, or boundary leaves all of them out");
 
     MeshModel* made = document.addNewMesh("", "deviation of " + layer.label(), true);
     write_back(*made, dense.positions, dense.sizes, dense.vertices, false);
@@ -259,33 +220,6 @@ std::string measure_deviation(RichParameterList const& parameters, MeshDocument&
         .arg(-largest)
         .arg(largest)
         .toStdString();
-}
-
-void add_marks(MeshDocument const& document, RichParameterList& list) {
-    // What is selected is what the user means.
-    int marks = SelectedVertices;
-    if (MeshModel const* const layer = document.mm()) {
-        for (auto const& vertex : layer->cm.vert)
-            if (!vertex.IsD() && vertex.IsS()) goto found;
-        for (auto const& face : layer->cm.face) {
-            if (face.IsD()) continue;
-            if (face.IsS()) marks = SelectedFaces;
-            if (marks == SelectedVertices && (face.IsFaceEdgeS(0) || face.IsFaceEdgeS(1) || face.IsFaceEdgeS(2)))
-                marks = SelectedEdges;
-        }
-    }
-found:
-    list.addParam(RichEnum(
-        "marks", marks,
-        QStringList{"edges that leave the selected vertices", "edges that leave the selected faces", "selected edges",
-                    "rings through the selected edges", "selectors"},
-        "Marks",
-        "Which edges the feature crosses. It runs round the selected vertices or faces; or over the selected edges (Select "
-        "Crease Edges selects some), or over all edges that a loop cut from them would cross; or over those that the "
-        "selectors below name."));
-    list.addParam(RichString("selectors", "", "Selectors",
-                             "Where marks is set to selectors: edge:A,B ring:A,B path:A,B:C,D cut:V,V,... with numbers of "
-                             "vertices, counted from 0; several separated by blanks."));
 }
 
 void add_boundary(RichParameterList& list) {
