@@ -649,6 +649,16 @@ int32_t welt_mesh_create(const uint32_t *face_sizes,
 WELT_API void welt_mesh_free(welt_mesh *mesh);
 
 /*
+ Copies a mesh, with all that it holds: options, sharpness, holes, marks, groups and texture coordinates.
+
+ mesh: must not be NULL.
+ copy: receives the handle; free it with welt_mesh_free.
+
+ Selections that were made on the mesh serve the copy too. Since: 0.1.
+ */
+WELT_API int32_t welt_mesh_copy(const welt_mesh *mesh, welt_mesh **copy, welt_error **error);
+
+/*
  Number of vertices; 0 where mesh is NULL or poisoned. Since: 0.1.
  */
 WELT_API size_t welt_mesh_vertex_count(const welt_mesh *mesh);
@@ -979,6 +989,23 @@ int32_t welt_refinement_face_vertices(const welt_refinement *refinement,
                                       uint32_t level,
                                       const uint32_t **vertices,
                                       welt_error **error);
+
+/*
+ Gives a level as a mesh: another control mesh of the same surface. It has the sharpness that is left and the options of
+ subdivision; faces without a limit surface are holes.
+
+ refinement: must not be NULL.
+ level: 0 to the depth.
+ mesh: receives the handle; free it with welt_mesh_free.
+
+ Its vertices and faces are numbered as those of the level, so that welt_mesh_limit_positions of it moves the level onto
+ the limit surface. Since: 0.1.
+ */
+WELT_API
+int32_t welt_refinement_mesh(const welt_refinement *refinement,
+                             uint32_t level,
+                             welt_mesh **mesh,
+                             welt_error **error);
 
 /*
  What the vertices of a level stand for on the level before.

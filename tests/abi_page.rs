@@ -9,7 +9,8 @@ fn references(text: &str) -> Vec<(&str, Vec<&str>)> {
     // Odd parts stand between backquotes, each followed by what comes after it.
     for pair in parts.get(1..).unwrap_or_default().chunks_exact(2) {
         let (quoted, after) = (pair[0], pair[1]);
-        let is_file = (quoted.starts_with("tests/") || quoted.starts_with("src/")) && after.starts_with(':');
+        let is_file = ["tests/", "src/", "bindings/"].iter().any(|start| quoted.starts_with(start))
+            && after.starts_with(':');
         if is_file {
             found.push((quoted, Vec::new()));
         } else if let Some((_, names)) = found.last_mut() {
@@ -38,6 +39,7 @@ fn has_test(file: &str, source: &str, name: &str) -> bool {
             });
             direct || made
         }
+        Some("py") => squeezed.contains(&format!("def {name}(")),
         _ => {
             let defined = squeezed.contains(&format!("void {name}("));
             defined && squeezed.matches(&format!("{name}(")).count() > 1

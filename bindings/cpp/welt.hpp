@@ -266,6 +266,8 @@ struct BatchOptions : welt_batch_options {
 
 // --- Surfaces ----------------------------------------------------------------------------------------------------------
 
+class Mesh;
+
 // One number or view per level; level 0 is the mesh.
 class Refinement : public detail::Handle<welt_refinement, welt_refinement_free> {
 public:
@@ -285,6 +287,9 @@ public:
         detail::call(welt_refinement_face_vertices, get(), level, &first);
         return {first, welt_refinement_face_vertex_count(get(), level)};
     }
+
+    // Another control mesh of the same surface, numbered as the level.
+    Mesh mesh(std::uint32_t level) const;
 
     struct VertexParents {
         std::vector<std::uint32_t> kinds, elements;
@@ -449,8 +454,6 @@ public:
 
 // --- Marks and rules ---------------------------------------------------------------------------------------------------
 
-class Mesh;
-
 class Selection : public detail::Handle<welt_selection, welt_selection_free> {
 public:
     using Handle::Handle;
@@ -503,6 +506,9 @@ public:
         : Handle(detail::make<welt_mesh>(welt_mesh_create, face_sizes.data(), face_sizes.size(), face_vertices.data(),
                                          face_vertices.size(), positions.first(), positions.count(),
                                          positions.stride())) {}
+
+    // With all that the mesh holds. Handles are moved, so that a copy is never made by mistake.
+    Mesh copy() const { return Mesh(detail::make<welt_mesh>(welt_mesh_copy, get())); }
 
     // Files. What was ignored and repaired stands in the report, for those who ask.
     static Mesh import_file(std::string_view path, ImportOptions const& options = {}, Report* report = nullptr) {
@@ -685,6 +691,10 @@ private:
         });
     }
 };
+
+inline Mesh Refinement::mesh(std::uint32_t level) const {
+    return Mesh(detail::make<welt_mesh>(welt_refinement_mesh, get(), level));
+}
 
 inline Selection::Edges Selection::edges(Mesh const& mesh) const {
     Edges all{std::vector<std::uint32_t>(2 * count()), std::vector<double>(count())};

@@ -116,6 +116,30 @@ pub unsafe extern "C" fn welt_mesh_free(mesh: *mut WeltMesh) {
     unsafe { arguments::free(mesh) };
 }
 
+/// Copies a mesh, with all that it holds: options, sharpness, holes, marks, groups and texture coordinates.
+///
+/// mesh: must not be NULL.
+/// copy: receives the handle; free it with welt_mesh_free.
+///
+/// Selections that were made on the mesh serve the copy too. Since: 0.1.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn welt_mesh_copy(
+    mesh: *const WeltMesh,
+    copy: *mut *mut WeltMesh,
+    error: *mut *mut WeltError,
+) -> i32 {
+    let body = || {
+        // SAFETY: the header asks for NULL or a place for the handle.
+        let output = unsafe { Output::new(copy, "copy") }?;
+        // SAFETY: the header asks for a living mesh.
+        let mesh = unsafe { mesh_of(mesh) }?;
+        output.handle(WeltMesh::new(mesh.clone()));
+        Ok(())
+    };
+    // SAFETY: the header asks for NULL or a place for an error.
+    unsafe { boundary(error, body) }
+}
+
 /// A number that a mesh has, 0 where it cannot be read.
 ///
 /// # Safety

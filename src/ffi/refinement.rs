@@ -191,6 +191,35 @@ pub unsafe extern "C" fn welt_refinement_face_vertices(
     unsafe { boundary(error, body) }
 }
 
+/// Gives a level as a mesh: another control mesh of the same surface. It has the sharpness that is left and the options of
+/// subdivision; faces without a limit surface are holes.
+///
+/// refinement: must not be NULL.
+/// level: 0 to the depth.
+/// mesh: receives the handle; free it with welt_mesh_free.
+///
+/// Its vertices and faces are numbered as those of the level, so that welt_mesh_limit_positions of it moves the level onto
+/// the limit surface. Since: 0.1.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn welt_refinement_mesh(
+    refinement: *const WeltRefinement,
+    level: u32,
+    mesh: *mut *mut WeltMesh,
+    error: *mut *mut WeltError,
+) -> i32 {
+    let body = || {
+        // SAFETY: the header asks for a living refinement and a place for the handle.
+        let (refinement, output) =
+            unsafe { (arguments::handle(refinement, "refinement")?, Output::new(mesh, "mesh")?) };
+        let (_, positions) = refinement.level(level)?;
+        let polygons = refinement.refinement.polygons(level as usize, positions.to_vec());
+        output.handle(WeltMesh::new(Mesh::from_polygons(&polygons)?));
+        Ok(())
+    };
+    // SAFETY: the header asks for NULL or a place for an error.
+    unsafe { boundary(error, body) }
+}
+
 /// What the vertices of a level stand for on the level before.
 ///
 /// refinement: must not be NULL.

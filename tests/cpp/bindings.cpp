@@ -72,6 +72,10 @@ void meshes_come_back_as_they_were_given() {
     mesh.set_positions({&padded[0].x, padded.size(), sizeof(Padded)});
     that(mesh.positions()[3] == welt::Vector{3.0, 0.0, 5.0}, "points with a stride");
 
+    welt::Mesh const copy = mesh.copy();
+    mesh.set_positions(data.positions);
+    that(copy.positions()[3] == welt::Vector{3.0, 0.0, 5.0} && copy.faces().vertices == data.corners, "a copy stays as it is");
+
     welt::Mesh moved = std::move(mesh);
     that(mesh.get() == nullptr && moved.vertex_count() == data.positions.size(), "a mesh is moved");
     welt::Error const error = failure(WELT_ERROR_ARGUMENT, [&] { mesh.positions(); });
@@ -129,6 +133,7 @@ void surfaces() {
     that(mesh.freeze().evaluate<welt::Tangents>(face, {}, middle, 2).at(0).dv == jet.dv, "first derivatives");
     welt::Curvature const flat = mesh.freeze().curvature(face, {}, middle).at(0);
     that(flat.greater == 0.0 && flat.gaussian == 0.0 && flat.greater_direction[2] == 0.0, "a plane is not curved");
+    that(refinement.mesh(1).edges().size() == 2 * refinement.edge_count(1), "a level is a mesh");
     that(mesh.limit_normals()[10] == welt::Vector{0, 0, 1} && mesh.limit_positions()[10][2] == 0.0, "limit");
     std::uint32_t const corner[] = {0};
     float const infinite[] = {10.0f};

@@ -110,6 +110,7 @@ void version_error_job_report() {
 void mesh_and_files() {
     ADD(welt_mesh_create, "rrrro", {w.sizes.data(), w.sizes.size(), w.corners.data(), w.corners.size(),
         w.positions.data(), w.positions.size() / 3, 0, &w.out.mesh, &w.out.error});
+    ADD(welt_mesh_copy, "rro", {w.mesh(), &w.out.mesh, &w.out.error});
     ADD(welt_mesh_free, "f", {take(w.mesh())});
     ADD(welt_mesh_vertex_count, "o", {w.mesh()});
     ADD(welt_mesh_edge_count, "o", {w.mesh()});
@@ -143,6 +144,7 @@ void surfaces() {
     ADD(welt_refinement_face_vertex_count, "o", {w.refinement(), 1});
     ADD(welt_refinement_positions, "rro", {w.refinement(), 1, &w.out.doubles_view, &w.out.error});
     ADD(welt_refinement_face_vertices, "rro", {w.refinement(), 1, &w.out.integers_view, &w.out.error});
+    ADD(welt_refinement_mesh, "rro", {w.refinement(), 1, &w.out.mesh, &w.out.error});
     ADD(welt_refinement_vertex_parents, "rrro", {w.refinement(), 1, w.out.integers.data(), w.out.more_integers.data(),
         w.out.integers.size(), &w.out.error});
     ADD(welt_refinement_face_parents, "rrro", {w.refinement(), 1, w.out.integers.data(), w.out.more_integers.data(),

@@ -1,0 +1,63 @@
+"""The declarations of the package against include/welt.h."""
+
+import ctypes
+import os
+import re
+import unittest
+
+from welt import _abi
+
+HEADER = os.path.join(os.path.dirname(__file__), "../../../include/welt.h")
+
+
+def code():
+    with open(HEADER, encoding="utf-8") as file:
+        return re.sub(r"/\*.*?\*/", "", file.read(), flags=re.S)
+
+
+def one_line(text):
+    return " ".join(text.split()).replace("( ", "(")
+
+
+class Header(unittest.TestCase):
+    def test_every_function_is_declared_with_its_signature(self):
+        header = [one_line(m) for m in re.findall(r"^WELT_API\s+(.*?);", code(), flags=re.S | re.M)]
+        package = [one_line(p) for p in _abi.PROTOTYPES.split(";") if p.strip()]
+        self.assertGreater(len(header), 60)
+        missing = [p + ";" for p in header if p not in package]
+        surplus = [p + ";" for p in package if p not in header]
+        self.assertEqual((missing, surplus), ([], []), "add what is missing to PROTOTYPES in welt/_abi.py")
+        self.assertEqual(header, package, "the order is that of the header")
+
+    def test_constants(self):
+        header = {name: int(value) for name, value in re.findall(r"^#define (WELT_\w+) (-?\d+)$", code(), flags=re.M)}
+        self.assertEqual(header, _abi.CONSTANTS)
+
+    def test_structs_have_the_layout_of_the_header(self):
+        header = {}
+        for body, name in re.findall(r"^typedef struct \{(.*?)\} (\w+);", code(), flags=re.S | re.M):
+            header[name] = re.findall(r"(\w+) (\w+)(?:\[(\d+)\])?;", body)
+        self.assertEqual(set(header), set(_abi.STRUCTS))
+        for name, members in header.items():
+            declared = []
+            for member, kind in _abi.STRUCTS[name]._fields_:
+                length = str(kind._length_) if issubclass(kind, ctypes.Array) else ""
+                plain = kind._type_ if length else kind
+                declared.append((next(c for c, t in _abi._VALUES.items() if t is plain), member, length))
+            self.assertEqual(declared, members, name)
+
+    def test_types_are_those_of_the_prototypes(self):
+        table = _abi.functions()
+        apply = table["welt_feature_apply"]
+        self.assertEqual(len(apply.arguments), 10)
+        self.assertEqual(apply.handles, [(0, True), (1, False), (7, False)], "the mesh is changed, selection and job are read")
+        self.assertTrue(apply.fails)
+        self.assertIs(table["welt_mesh_set_edge_sharpness"].arguments[2], ctypes.POINTER(ctypes.c_float))
+        self.assertIs(table["welt_mesh_positions"].arguments[1], ctypes.POINTER(ctypes.POINTER(ctypes.c_double)))
+        self.assertIs(table["welt_surface_closest"].arguments[4], ctypes.POINTER(_abi.SurfacePoint))
+        self.assertIs(table["welt_job_progress"].result, ctypes.c_double)
+        self.assertFalse(table["welt_job_progress"].fails)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,79 @@
+"""What calls are told beside meshes and arrays, in the form of the C ABI."""
+
+from __future__ import annotations
+
+import ctypes
+import json
+import math
+from typing import Any, Dict, Mapping, Union
+
+from ._abi import CONSTANTS, BatchOptions, FeatureOptions, ImportOptions
+from ._library import raw
+from .errors import ArgumentError
+
+
+def constant(prefix: str, name: str) -> int:
+    """The constant of the C ABI that a word stands for."""
+    try:
+        return CONSTANTS[prefix + name.upper()]
+    except KeyError:
+        known = ", ".join(key[len(prefix) :].lower() for key in CONSTANTS if key.startswith(prefix))
+        raise ArgumentError(f"{name!r} is none of {known}") from None
+
+
+def whole(value: int, what: str) -> int:
+    """A number that fits 32 bits, which ctypes would cut off."""
+    if not 0 <= value <= 0xFFFFFFFF:
+        raise ArgumentError(f"{what} must be from 0 to 4294967295, not {value}")
+    return value
+
+
+def chosen(table: Mapping[int, int], value: int, what: str) -> int:
+    if value not in table:
+        raise ArgumentError(f"{what} must be one of {', '.join(map(str, table))}, not {value}")
+    return table[value]
+
+
+def same(first: int, second: int, rule: str) -> None:
+    if first != second:
+        raise ArgumentError(f"there must be {rule}, not {first} and {second}")
+
+
+def importing(repair: bool, weld: float) -> Any:
+    options = ImportOptions()
+    raw("welt_import_options_init", options, ctypes.sizeof(options))
+    options.repair, options.weld = int(repair), weld
+    return ctypes.byref(options)
+
+
+def batch(threads: int) -> Any:
+    options = BatchOptions()
+    raw("welt_batch_options_init", options, ctypes.sizeof(options))
+    options.threads = whole(threads, "threads")
+    return ctypes.byref(options)
+
+
+def feature(fit: str, parity: str, strict: bool, deviation: bool) -> FeatureOptions:
+    options = FeatureOptions()
+    raw("welt_feature_options_init", options, ctypes.sizeof(options))
+    options.fit, options.parity = constant("WELT_FIT_", fit), constant("WELT_PARITY_", parity)
+    options.strict, options.deviation = int(strict), int(deviation)
+    return options
+
+
+def settings(given: Union[str, Mapping[str, Union[int, float, str]]]) -> bytes:
+    """`NAME=VALUE ...` of a mapping; a text is taken as it is."""
+    if isinstance(given, str):
+        return given.encode()
+    for name, value in given.items():
+        if isinstance(value, float) and not math.isfinite(value):
+            raise ArgumentError(f"{name} must be a finite number, not {value}")
+    return " ".join(f"{name}={value}" for name, value in given.items()).encode()
+
+
+def report(handle: ctypes.c_void_p) -> Dict[str, Any]:
+    """The content of a report, which is freed."""
+    try:
+        return json.loads(raw("welt_report_json", handle))  # type: ignore[no-any-return]
+    finally:
+        raw("welt_report_free", handle)
