@@ -162,7 +162,7 @@ fn messages_name_place_and_remedy() {
 
 #[test]
 fn limits_are_checked_while_reading() {
-    let limits = io::Limits { max_vertices: 3, max_faces: 1, max_arity: 3 };
+    let limits = io::Limits { max_vertices: 3, max_faces: 1, max_arity: 3, max_valence: 2 };
     let options = ImportOptions { limits, ..ImportOptions::default() };
     let triangle = "v 0 0 0\nv 1 0 0\nv 1 1 0\nf 1 2 3\n";
     assert!(import("a.obj", triangle.as_bytes(), &options).is_ok());
@@ -176,6 +176,17 @@ fn limits_are_checked_while_reading() {
         let error = import("a.obj", text.as_bytes(), &options).expect_err(part).to_string();
         assert!(error.contains(part), "{error}");
     }
+    let fan = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv -1 0 0\nf 1 2 3\nf 1 3 4\n";
+    let tight = ImportOptions {
+        limits: io::Limits { max_valence: 1, ..io::Limits::default() },
+        ..ImportOptions::default()
+    };
+    assert!(import("a.obj", fan.as_bytes(), &ImportOptions::default()).is_ok());
+    let error = import("a.obj", fan.as_bytes(), &tight).expect_err("two faces at vertex 0").to_string();
+    assert!(
+        error.contains("a.obj: 2 faces meet at vertex 0, more than the limit of 1; use fewer"),
+        "{error}"
+    );
     let error = import("a.obj", b"v 0 0 0\nf 1 1 1 1\n", &options).expect_err("a large face").to_string();
     assert!(error.contains("a.obj:2:9: a face with more than 3 vertices; split the face"), "{error}");
 }

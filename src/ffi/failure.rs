@@ -4,7 +4,7 @@ use super::status::*;
 use crate::feature::{FeatureError, LeftoverMark, ProfileError, RequestError, WidthError};
 use crate::gml::Diagnostic;
 use crate::grammar::{RulesError, RunError};
-use crate::io::{ExportError, ImportError};
+use crate::io::{Excess, ExportError, ImportError};
 use crate::job::Cancelled;
 use crate::mark::{MarkError, SelectorError};
 use crate::mesh::{Defect, Defects};
@@ -93,6 +93,19 @@ impl From<Defects> for Failure {
     }
 }
 
+impl From<Excess> for Failure {
+    fn from(excess: Excess) -> Self {
+        let message = excess.to_string();
+        let location = match excess {
+            Excess::Whole { .. } => Location::Whole,
+            Excess::Arity { face, .. } => Location::Face(face),
+            Excess::Valence { vertex, .. } => Location::Vertex(vertex),
+        };
+        let places = vec![Place { location, message: message.clone(), text: None }];
+        Self { code: WELT_ERROR_TOO_LARGE, message, places }
+    }
+}
+
 impl From<ImportError> for Failure {
     fn from(error: ImportError) -> Self {
         let message = error.to_string();
@@ -111,6 +124,7 @@ impl From<ImportError> for Failure {
                 let places = vec![Place { location: Location::Whole, message: what, text }];
                 Self { code: WELT_ERROR_SYNTAX, message, places }
             }
+            ImportError::Excess { excess, .. } => Self { message, ..Self::from(excess) },
             ImportError::Defects { file, defects } => {
                 let place = |located: &crate::io::LocatedDefect| {
                     let line = located.lines.first().copied().unwrap_or(0);

@@ -7,7 +7,7 @@ use super::failure::Failure;
 use super::mesh::{WeltMesh, mesh_of};
 use super::options::{self, Options};
 use super::report::WeltReport;
-use crate::io::{self, Format, Import, ImportOptions};
+use crate::io::{self, Format, Import, ImportOptions, Limits};
 use std::ffi::c_char;
 use std::path::Path;
 
@@ -27,16 +27,33 @@ pub struct WeltImportOptions {
     /// Merge vertices that are no further apart than this distance, in the unit of the file; 0 merges equal ones, a
     /// negative number none. Default -1.
     pub weld: f64,
+    /// Most vertices of a file, and most texture coordinates. Default 2^28.
+    pub max_vertices: u64,
+    /// Most faces of a file. Default 2^28.
+    pub max_faces: u64,
+    /// Most vertices of a face. Default 1024.
+    pub max_face_vertices: u64,
+    /// Most faces at a vertex; work and memory there grow with its square. Default 1024.
+    pub max_vertex_faces: u64,
 }
 
-// SAFETY: `repr(C)`, 4 + 4 + 8 bytes without padding, of integers and a double.
+// SAFETY: `repr(C)`, 4 + 4 + 8 + 4 * 8 bytes without padding, of integers and a double.
 unsafe impl Options for WeltImportOptions {
     fn first_size() -> usize {
         16
     }
 
     fn defaults(struct_size: u32) -> Self {
-        Self { struct_size, repair: 0, weld: -1.0 }
+        let Limits { max_vertices, max_faces, max_arity, max_valence } = Limits::default();
+        Self {
+            struct_size,
+            repair: 0,
+            weld: -1.0,
+            max_vertices,
+            max_faces,
+            max_face_vertices: max_arity,
+            max_vertex_faces: max_valence,
+        }
     }
 }
 
@@ -44,7 +61,13 @@ impl From<WeltImportOptions> for ImportOptions {
     fn from(options: WeltImportOptions) -> Self {
         // Not a number passes through, to be refused with its own message.
         let weld = if options.weld < 0.0 { None } else { Some(options.weld) };
-        Self { repair: options.repair != 0, weld, ..Self::default() }
+        let limits = Limits {
+            max_vertices: options.max_vertices,
+            max_faces: options.max_faces,
+            max_arity: options.max_face_vertices,
+            max_valence: options.max_vertex_faces,
+        };
+        Self { repair: options.repair != 0, weld, limits }
     }
 }
 
@@ -87,7 +110,8 @@ unsafe fn hand_over(
 /// free it with welt_report_free.
 ///
 /// Fails with WELT_ERROR_FILE where the file cannot be read, WELT_ERROR_SYNTAX where it cannot be understood (the place
-/// has the line), WELT_ERROR_MESH where the faces are no surface (each place has a defect and its line). Since: 0.1.
+/// has the line), WELT_ERROR_MESH where the faces are no surface (each place has a defect and its line),
+/// WELT_ERROR_TOO_LARGE where more faces meet at a vertex than the options allow. Since: 0.1.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn welt_mesh_import_file(
     path: *const c_char,

@@ -6,6 +6,7 @@ use super::error::WeltError;
 use super::failure::{Failure, Place};
 use super::status::WELT_ERROR_MESH;
 use crate::fault;
+use crate::io::Limits;
 use crate::mesh::{Mesh, Polygons, VertexId};
 use glam::DVec3;
 
@@ -69,7 +70,7 @@ pub(super) unsafe fn mesh_of<'a>(mesh: *const WeltMesh) -> Result<&'a Mesh, Fail
 ///
 /// The arrays are copied. Fails with WELT_ERROR_MESH where the polygons are no surface (an edge with three faces, fans of
 /// faces that meet in a vertex only, neighbours that are inside out to each other, ...): each place of the error is one
-/// defect. Since: 0.1.
+/// defect; with WELT_ERROR_TOO_LARGE beyond the default limits of welt_import_options. Since: 0.1.
 #[unsafe(no_mangle)]
 #[allow(clippy::too_many_arguments)]
 pub unsafe extern "C" fn welt_mesh_create(
@@ -100,6 +101,7 @@ pub unsafe extern "C" fn welt_mesh_create(
             face_vertices: vertices.to_vec(),
             ..Polygons::default()
         };
+        Limits::default().check(&polygons)?;
         output.handle(WeltMesh::new(Mesh::from_polygons(&polygons)?));
         Ok(())
     };

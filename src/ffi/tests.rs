@@ -308,17 +308,33 @@ fn files_in_memory() {
 #[test]
 fn options_of_other_sizes_and_bad_strings_are_refused() {
     let (mut mesh, mut error) = (null_mut(), null_mut());
-    let mut options = WeltImportOptions { struct_size: 0, repair: 7, weld: 7.0 };
+    let mut options = WeltImportOptions {
+        struct_size: 0,
+        repair: 7,
+        weld: 7.0,
+        max_vertices: 7,
+        max_faces: 7,
+        max_face_vertices: 7,
+        max_vertex_faces: 7,
+    };
     let size = size_of::<WeltImportOptions>();
     // SAFETY: the struct has these bytes, or the size is refused.
     unsafe {
-        assert_eq!(welt_import_options_init(&mut options, size - 1), WELT_ERROR_ARGUMENT);
+        assert_eq!(welt_import_options_init(&mut options, 15), WELT_ERROR_ARGUMENT);
         assert_eq!(welt_import_options_init(&mut options, size + 8), WELT_ERROR_ARGUMENT);
         assert_eq!(welt_import_options_init(null_mut(), size), WELT_ERROR_ARGUMENT);
         assert_eq!(options.repair, 7, "written by a call that failed");
+        // The struct of the first version ended with the welding distance.
+        assert_eq!(welt_import_options_init(&mut options, 16), WELT_OK);
+        assert_eq!((options.struct_size, options.weld, options.max_vertices), (16, -1.0, 7));
         assert_eq!(welt_import_options_init(&mut options, size), WELT_OK);
     }
     assert_eq!((options.struct_size as usize, options.repair, options.weld), (size, 0, -1.0));
+    let fan = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv -1 0 0\nf 1 2 3\nf 1 3 4\n";
+    options.max_vertex_faces = 1;
+    assert_eq!(import(fan, &options, &mut mesh, null_mut(), &mut error), WELT_ERROR_TOO_LARGE);
+    assert!(take(&mut error).1.contains("2 faces meet at vertex 0"));
+    options.max_vertex_faces = 2;
     options.struct_size = 8;
     let text = "v 0 0 0\n";
     assert_eq!(import(text, &options, &mut mesh, null_mut(), &mut error), WELT_ERROR_ARGUMENT);

@@ -1,5 +1,6 @@
 //! What can go wrong while a file is read or written.
 
+use super::Excess;
 use crate::mesh::Defect;
 use serde::Serialize;
 use std::io;
@@ -52,6 +53,14 @@ pub enum ImportError {
     WeldDistance {
         /// The distance.
         distance: f64,
+    },
+    /// The file was understood, but is larger than the limits allow.
+    #[error("{file}: {excess}")]
+    Excess {
+        /// The file.
+        file: String,
+        /// What is larger; numbers of elements are those after the repairs.
+        excess: Excess,
     },
     /// The file was understood, but the kernel cannot hold what it describes.
     #[error("{file}: {}", summary(.defects))]

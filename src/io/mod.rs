@@ -23,7 +23,7 @@ pub use save::save;
 pub use source::Source;
 
 use crate::fault;
-use crate::mesh::Mesh;
+use crate::mesh::{Mesh, Polygons};
 use std::path::Path;
 
 /// A file format.
@@ -49,21 +49,98 @@ impl Format {
     }
 }
 
-/// Sizes beyond which a file is refused while it is read. The defaults are far above control meshes.
+/// Sizes beyond which polygons are refused. The defaults are far above control meshes.
 #[derive(Clone, PartialEq, Eq, Debug)]
 pub struct Limits {
     /// Most vertices (and most texture coordinates); default 2^28.
     pub max_vertices: u64,
     /// Most faces; default 2^28.
     pub max_faces: u64,
-    /// Most vertices of one face; default 2^20.
+    /// Most vertices of one face; default 1024.
     pub max_arity: u64,
+    /// Most faces at one vertex; default 1024. Work and memory at a vertex grow with the square of this number.
+    pub max_valence: u64,
 }
 
 impl Default for Limits {
     fn default() -> Self {
-        Self { max_vertices: 1 << 28, max_faces: 1 << 28, max_arity: 1 << 20 }
+        Self { max_vertices: 1 << 28, max_faces: 1 << 28, max_arity: 1 << 10, max_valence: 1 << 10 }
     }
+}
+
+impl Limits {
+    /// What of the polygons is beyond the limits, if anything. What was read from a file has been compared while it was
+    /// read, but for the valence.
+    ///
+    /// # Errors
+    /// The first excess.
+    pub fn check(&self, polygons: &Polygons) -> Result<(), Excess> {
+        let whole = [
+            (polygons.positions.len() as u64, self.max_vertices, "vertices"),
+            (polygons.face_sizes.len() as u64, self.max_faces, "faces"),
+        ];
+        for (count, limit, what) in whole {
+            if count > limit {
+                return Err(Excess::Whole { count, limit, what });
+            }
+        }
+        for (face, &count) in (0..).zip(&polygons.face_sizes) {
+            if u64::from(count) > self.max_arity {
+                return Err(Excess::Arity { face, count, limit: self.max_arity });
+            }
+        }
+        let mut valences = vec![0u32; polygons.positions.len()];
+        for &vertex in &polygons.face_vertices {
+            if let Some(valence) = valences.get_mut(vertex as usize) {
+                *valence += 1;
+            }
+        }
+        match (0..).zip(valences).find(|&(_, count)| u64::from(count) > self.max_valence) {
+            Some((vertex, count)) => Err(Excess::Valence { vertex, count, limit: self.max_valence }),
+            None => Ok(()),
+        }
+    }
+}
+
+/// Polygons that are larger than [`Limits`] allow. Numbers of elements are 0-based.
+#[derive(Clone, PartialEq, Eq, Debug, thiserror::Error)]
+pub enum Excess {
+    /// Too many elements.
+    #[error(
+        "{count} {what} are more than the limit of {limit}; raise the limit if the mesh is meant to be this large"
+    )]
+    Whole {
+        /// How many there are.
+        count: u64,
+        /// How many there may be.
+        limit: u64,
+        /// Of what.
+        what: &'static str,
+    },
+    /// A face with too many vertices.
+    #[error(
+        "face {face} has {count} vertices, more than the limit of {limit}; split the face, or raise the limit"
+    )]
+    Arity {
+        /// The face.
+        face: u32,
+        /// How many it has.
+        count: u32,
+        /// How many it may have.
+        limit: u64,
+    },
+    /// A vertex with too many faces.
+    #[error(
+        "{count} faces meet at vertex {vertex}, more than the limit of {limit}; use fewer, or raise the limit"
+    )]
+    Valence {
+        /// The vertex.
+        vertex: u32,
+        /// How many meet.
+        count: u32,
+        /// How many may.
+        limit: u64,
+    },
 }
 
 /// How a file is taken over.
@@ -136,7 +213,10 @@ pub fn read_bytes(
         Format::Ply => ply::read(name, bytes, &options.limits)?,
     };
     source.mend(options)?;
-    Ok(source)
+    match options.limits.check(&source.polygons) {
+        Ok(()) => Ok(source),
+        Err(excess) => Err(ImportError::Excess { file: name.to_owned(), excess }),
+    }
 }
 
 /// Writes `mesh` to `path`, in the format its extension names (PLY: binary, without further data).

@@ -1,7 +1,7 @@
 //! How far patches are from the limit surface, and how their normals meet.
 
 use super::cells::Cell;
-use super::pieces::patch_of;
+use super::pieces::{Pieces, patch_of};
 use super::regions::Region;
 use super::spline::{SplinePatch, SplinePoint};
 use crate::mesh::{FaceId, Mesh};
@@ -39,7 +39,13 @@ pub(super) enum Spans {
 
 impl Ruler<'_> {
     /// Measures a patch. Distances within rounding count as none.
-    pub(super) fn distance(&self, region: &Region, patch: &SplinePatch, which: Spans) -> Distance {
+    pub(super) fn distance(
+        &self,
+        pieces: &mut Pieces,
+        region: &Region,
+        patch: &SplinePatch,
+        which: Spans,
+    ) -> Distance {
         let mut worst = Distance::default();
         let rounding = self.surface.tolerance.max(1e-13 * self.surface.size);
         let (us, vs) = (spans(&patch.knots_u), spans(&patch.knots_v));
@@ -53,13 +59,12 @@ impl Ruler<'_> {
                 let count = if last { FINE } else { COARSE };
                 let place =
                     |k: usize, low: f64, high: f64| low + (high - low) * (k as f64 + 0.5) / count as f64;
-                let (base, frame) =
-                    patch_of(self.cells, region, DVec2::new(0.5 * (u0 + u1), 0.5 * (v0 + v1)));
                 for k in 0..count * count {
                     let at = DVec2::new(place(k % count, u0, u1), place(k / count, v0, v1));
                     let Some(found) = patch.evaluate(at.x, at.y) else { continue };
-                    let far = foot_distance(self.surface, base, frame.local(at), found.position);
+                    let far = self.foot_distance(pieces, region, at, found.position);
                     if far > rounding {
+                        let (base, _) = patch_of(self.cells, region, at);
                         let length = edge_length(self.mesh, self.surface.places[base].face);
                         worst.absolute = worst.absolute.max(far);
                         worst.relative = worst.relative.max(far / length);
@@ -68,6 +73,29 @@ impl Ruler<'_> {
             }
         }
         worst
+    }
+
+    /// Distance of `point` to the surface near `at` in a region: never less than that to the closest point.
+    fn foot_distance(&self, pieces: &mut Pieces, region: &Region, mut at: DVec2, point: DVec3) -> f64 {
+        let mut nearest = f64::INFINITY;
+        for _ in 0..STEPS {
+            let Some(here) = pieces.point(self.cells, region, at) else { break };
+            let offset = point - here.position;
+            nearest = nearest.min(offset.length());
+            if nearest <= self.surface.tolerance {
+                break;
+            }
+            let (uu, uv, vv) = (here.du.length_squared(), here.du.dot(here.dv), here.dv.length_squared());
+            let (a, b) = (offset.dot(here.du), offset.dot(here.dv));
+            let determinant = uu * vv - uv * uv;
+            if determinant <= 1e-12 * uu * vv {
+                break;
+            }
+            let step = DVec2::new(vv * a - uv * b, uu * b - uv * a) / determinant;
+            let end = DVec2::new(region.size[0] as f64, region.size[1] as f64);
+            at = (at + step).clamp(DVec2::ZERO, end);
+        }
+        nearest
     }
 }
 
@@ -81,29 +109,6 @@ fn edge_length(mesh: &Mesh, face: FaceId) -> f64 {
         .face_half_edges(face)
         .fold((0.0, 0.0), |(sum, count), h| (sum + mesh.edge_length(h), count + 1.0));
     (sum / count).max(f64::MIN_POSITIVE)
-}
-
-/// Distance of `point` to the surface near (u, v) of a patch: never less than that to the closest point.
-fn foot_distance(surface: &LimitSurface, patch: usize, at: DVec2, point: DVec3) -> f64 {
-    let mut at = at.clamp(DVec2::ZERO, DVec2::ONE);
-    let mut nearest = f64::INFINITY;
-    for _ in 0..STEPS {
-        let here = surface.evaluate_patch(patch, at.x, at.y);
-        let offset = point - here.position;
-        nearest = nearest.min(offset.length());
-        if nearest <= surface.tolerance {
-            break;
-        }
-        let (uu, uv, vv) = (here.du.length_squared(), here.du.dot(here.dv), here.dv.length_squared());
-        let (a, b) = (offset.dot(here.du), offset.dot(here.dv));
-        let determinant = uu * vv - uv * uv;
-        if determinant <= 1e-12 * uu * vv {
-            break;
-        }
-        let step = DVec2::new(vv * a - uv * b, uu * b - uv * a) / determinant;
-        at = (at + step).clamp(DVec2::ZERO, DVec2::ONE);
-    }
-    nearest
 }
 
 /// Greatest angle in degrees between the normals of two patches along a shared side.

@@ -129,7 +129,7 @@ impl Patches {
             for (number, region) in regions.iter().enumerate() {
                 step(number as f64 / regions.len() as f64)?;
                 let patch = make(cells, region, &inner, pieces);
-                worst = worst.max(ruler.distance(region, &patch, Spans::Last).relative);
+                worst = worst.max(ruler.distance(pieces, region, &patch, Spans::Last).relative);
                 patches.push(patch);
             }
             if worst <= options.tolerance || rings >= *RINGS.end() {
@@ -140,7 +140,7 @@ impl Patches {
         };
         self.report.rings = self.report.rings.max(rings);
         for (region, patch) in regions.iter().zip(&mut patches) {
-            let found = ruler.distance(region, patch, Spans::All);
+            let found = ruler.distance(pieces, region, patch, Spans::All);
             (patch.deviation, patch.relative_deviation) = (found.absolute, found.relative);
         }
         seam::join(&mut patches, &neighbours);

@@ -3,6 +3,7 @@
 use super::cells::{Cell, Side};
 use super::frame::Frame;
 use super::regions::Region;
+use super::spline::SplinePoint;
 use crate::subdivision::patch::to_quarter;
 use crate::subdivision::patch_bicubic::Bicubic;
 use crate::subdivision::patch_corner::{Corner, Points};
@@ -51,6 +52,18 @@ impl<'a> Pieces<'a> {
                 }
             }
         }
+    }
+
+    /// The surface at a point of a region, with derivatives by the parameters of the region; `None` at an extraordinary vertex.
+    pub(super) fn point(&mut self, cells: &[Cell], region: &Region, at: DVec2) -> Option<SplinePoint> {
+        let (piece, frame) = self.find(cells, region, at)?;
+        let local = frame.local(at);
+        let jet = piece.tangents(local.x, local.y);
+        let derivative = |axis: DVec2| {
+            let by = frame.local(frame.origin + axis);
+            jet.du * by.x + jet.dv * by.y
+        };
+        Some(SplinePoint { position: jet.position, du: derivative(DVec2::X), dv: derivative(DVec2::Y) })
     }
 
     /// The side of a corner's refinements that holds `at`.
