@@ -299,6 +299,22 @@ typedef struct {
      negative number none. Default -1.
      */
     double weld;
+    /*
+     Most vertices of a file, and most texture coordinates. Default 2^28.
+     */
+    uint64_t max_vertices;
+    /*
+     Most faces of a file. Default 2^28.
+     */
+    uint64_t max_faces;
+    /*
+     Most vertices of a face. Default 1024.
+     */
+    uint64_t max_face_vertices;
+    /*
+     Most faces at a vertex; work and memory there grow with its square. Default 1024.
+     */
+    uint64_t max_vertex_faces;
 } welt_import_options;
 
 /*
@@ -630,7 +646,7 @@ const char *welt_report_json(const welt_report *report);
 
  The arrays are copied. Fails with WELT_ERROR_MESH where the polygons are no surface (an edge with three faces, fans of
  faces that meet in a vertex only, neighbours that are inside out to each other, ...): each place of the error is one
- defect. Since: 0.1.
+ defect; with WELT_ERROR_TOO_LARGE beyond the default limits of welt_import_options. Since: 0.1.
  */
 WELT_API
 int32_t welt_mesh_create(const uint32_t *face_sizes,
@@ -826,7 +842,8 @@ int32_t welt_import_options_init(welt_import_options *options,
  free it with welt_report_free.
 
  Fails with WELT_ERROR_FILE where the file cannot be read, WELT_ERROR_SYNTAX where it cannot be understood (the place
- has the line), WELT_ERROR_MESH where the faces are no surface (each place has a defect and its line). Since: 0.1.
+ has the line), WELT_ERROR_MESH where the faces are no surface (each place has a defect and its line),
+ WELT_ERROR_TOO_LARGE where more faces meet at a vertex than the options allow. Since: 0.1.
  */
 WELT_API
 int32_t welt_mesh_import_file(const char *path,

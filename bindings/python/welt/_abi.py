@@ -56,7 +56,15 @@ CONSTANTS: Dict[str, int] = {
 
 
 class ImportOptions(ctypes.Structure):
-    _fields_ = [("struct_size", ctypes.c_uint32), ("repair", ctypes.c_uint32), ("weld", ctypes.c_double)]
+    _fields_ = [
+        ("struct_size", ctypes.c_uint32),
+        ("repair", ctypes.c_uint32),
+        ("weld", ctypes.c_double),
+        ("max_vertices", ctypes.c_uint64),
+        ("max_faces", ctypes.c_uint64),
+        ("max_face_vertices", ctypes.c_uint64),
+        ("max_vertex_faces", ctypes.c_uint64),
+    ]
 
 
 class BatchOptions(ctypes.Structure):
