@@ -39,13 +39,15 @@ class Header(unittest.TestCase):
             header[name] = re.findall(r"(\w+) (\**)(\w+)(?:\[(\d+)\])?;", body)
         self.assertEqual(set(header), set(_abi.STRUCTS))
         for name, members in header.items():
-            declared = []
-            for member, kind in _abi.STRUCTS[name]._fields_:
-                length = str(kind._length_) if issubclass(kind, ctypes.Array) else ""
-                star = "*" if issubclass(kind, ctypes._Pointer) else ""
-                plain = kind._type_ if length or star else kind
-                declared.append((next(c for c, t in _abi._VALUES.items() if t is plain), star, member, length))
-            self.assertEqual(declared, members, name)
+            declared = _abi.STRUCTS[name]._fields_
+            self.assertEqual([member for member, _ in declared], [member for _, _, member, _ in members], name)
+            for (member, kind), (plain, star, _, length) in zip(declared, members):
+                expected = _abi._VALUES[plain]
+                if length:
+                    expected = expected * int(length)
+                elif star:
+                    expected = ctypes.POINTER(expected)
+                self.assertIs(kind, expected, f"{name}.{member}")
 
     def test_types_are_those_of_the_prototypes(self):
         table = _abi.functions()

@@ -275,6 +275,7 @@ _VALUES = {
     "int32_t": ctypes.c_int32,
     "uint32_t": ctypes.c_uint32,
     "size_t": ctypes.c_size_t,
+    "uint64_t": ctypes.c_uint64,
     "double": ctypes.c_double,
     "float": ctypes.c_float,
     "uint8_t": ctypes.c_uint8,
