@@ -201,9 +201,8 @@ pub unsafe extern "C" fn welt_surface_signed_distances(
         if !batch.surface.is_closed() {
             return Err(Failure::argument("the surface has a border, so that it has no inside"));
         }
-        let results = batch.answers(|surface, _, row| {
-            surface.solid_distance(DVec3::from_slice(row)).unwrap_or(f64::NAN)
-        });
+        let results = batch
+            .answers(|surface, _, row| surface.solid_distance(DVec3::from_slice(row)).unwrap_or(f64::NAN));
         for (i, distance) in results.iter().enumerate() {
             // SAFETY: there is one thread again.
             unsafe { buffer.write(i, std::slice::from_ref(distance)) };
