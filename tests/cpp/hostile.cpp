@@ -111,7 +111,8 @@ void no_handle_no_answer() {
                     welt_error_place_column(nullptr, 0) == 0,
                 "no places");
     check::that(welt_job_progress(nullptr) == 0 && welt_job_stage(nullptr, nullptr, 0) == 0, "no job");
-    check::that(!*welt_report_json(nullptr) && welt_selection_count(nullptr) == 0, "no report, no selection");
+    check::that(!*welt_report_json(nullptr) && welt_selection_count(nullptr) == 0 && welt_patches_count(nullptr) == 0,
+                "no report, no selection, no patches");
     check::that(welt_mesh_vertex_count(nullptr) == 0 && welt_mesh_edge_count(nullptr) == 0 &&
                     welt_mesh_face_count(nullptr) == 0 && welt_mesh_face_vertex_count(nullptr) == 0,
                 "no mesh");
