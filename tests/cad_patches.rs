@@ -88,7 +88,7 @@ fn check_sides(patches: &Patches) {
                 |poles: &[DVec3]| poles.iter().map(|p| p.to_array().map(f64::to_bits)).collect::<Vec<_>>();
             assert_eq!(bits(&own), bits(&theirs), "side {side} of patch {number}");
             let along = |patch: &SplinePatch, side: usize| {
-                let knots = if side % 2 == 0 { &patch.knots_u } else { &patch.knots_v };
+                let knots = if side.is_multiple_of(2) { &patch.knots_u } else { &patch.knots_v };
                 let end = range(knots);
                 let mut knots = knots.clone();
                 if side > 1 {

@@ -141,7 +141,7 @@ fn edge_length(mesh: &Mesh, face: FaceId) -> f64 {
 
 /// Greatest angle in degrees between the normals of two patches along a shared side.
 pub(super) fn normal_jump(patch: &SplinePatch, side: usize, other: &SplinePatch, there: usize) -> f64 {
-    let own = if side % 2 == 0 { &patch.knots_u } else { &patch.knots_v };
+    let own = if side.is_multiple_of(2) { &patch.knots_u } else { &patch.knots_v };
     let length = own.last().copied().unwrap_or(0.0);
     let mut worst: f64 = 0.0;
     for [low, high] in spans(own) {
