@@ -1,9 +1,10 @@
 //! Grooves of depth 0 on real cages: how far each method leaves the limit surface from what it was. Prints the tables of
 //! docs/optimisation.md.
 //!
-//!     cargo run --release --example insertion -- [rings|crossings|tees|widths]... [every=N] [cages=FOLDER,...] [list]
+//!     cargo run --release --example insertion -- [rings|crossings|tees|widths]... [every=N] [faces=N] [cages=FOLDER,...] [list]
 //!
-//! reads `../shared/data` (or `data=FOLDER`); `every=N` takes every Nth case, `list` prints every case too.
+//! reads `../shared/data` (or `data=FOLDER`); `every=N` takes every Nth case, `faces=N` cages of at most N faces, and `list`
+//! prints every case too.
 
 #[path = "../tests/common/mod.rs"]
 mod common;
@@ -73,9 +74,8 @@ fn table(title: &str, cases: &[[Figures; METHODS.len()]]) {
         let all = |figure: &dyn Fn(&Figures, &Figures) -> f64| -> Vec<f64> {
             cases.iter().map(|case| figure(&case[k], &case[0])).collect()
         };
-        let percent = |figure: fn(&Figures) -> f64| {
-            format!("{:.3}", 100.0 * quantile(all(&|own, _| figure(own)), 0.5))
-        };
+        let percent =
+            |figure: fn(&Figures) -> f64| format!("{:.3}", 100.0 * quantile(all(&|own, _| figure(own)), 0.5));
         let pair = |values: Vec<f64>, worst: f64| {
             format!("{:.2} ({:.2})", quantile(values.clone(), 0.5), quantile(values, worst))
         };
@@ -110,7 +110,9 @@ fn insertions(title: &str, cases: impl Iterator<Item = (String, Mesh, Marked)>, 
         if none.is_none_or(|none| none.rms <= FLAT) {
             continue;
         }
-        let Some(of_case) = METHODS.map(insert).into_iter().collect::<Option<Vec<Figures>>>() else { continue };
+        let Some(of_case) = METHODS.map(insert).into_iter().collect::<Option<Vec<Figures>>>() else {
+            continue;
+        };
         if list {
             let mark = &marked.selection.marks[0];
             print!("{name} {title} {} {:?}", marked.selection.marks.len(), mark.half_edge);
@@ -127,7 +129,9 @@ fn insertions(title: &str, cases: impl Iterator<Item = (String, Mesh, Marked)>, 
 /// Grooves of a tenth of an edge: widths and depths reached over asked, and time.
 fn widths(cases: impl Iterator<Item = (String, Mesh, Marked)>) {
     let cases: Vec<_> = cases.collect();
-    println!("\nwidth 30 %, depth 10 %: reached over asked in the mean of the worst places, places off by more than 3 %\n");
+    println!(
+        "\nwidth 30 %, depth 10 %: reached over asked in the mean of the worst places, places off by more than 3 %\n"
+    );
     println!("| method | width, 1 % | 10 % | 50 % | 90 % | 99 % | off | depth off | corrections | fit, ms |");
     println!("|---|---|---|---|---|---|---|---|---|---|");
     for method in METHODS {
@@ -138,7 +142,9 @@ fn widths(cases: impl Iterator<Item = (String, Mesh, Marked)>) {
             corrections += report.corrections;
             times.push(report.times.iter().filter(|lap| lap.0 == "fit").map(|lap| lap.1).sum());
             if let Some(width) = report.dimension("width") {
-                worst.extend([width.worst_low, width.worst_high].into_iter().filter(|ratio| ratio.is_finite()));
+                worst.extend(
+                    [width.worst_low, width.worst_high].into_iter().filter(|ratio| ratio.is_finite()),
+                );
                 places += width.stations;
                 off += width.off.len();
             }
@@ -165,10 +171,12 @@ fn main() {
     let all = !kinds.iter().any(|kind| wanted(kind));
     let step = value("every").and_then(|n| n.parse().ok()).filter(|n| *n > 0).unwrap_or(1);
     let Some(data) = value("data").map(PathBuf::from).or_else(common::shared_data) else { return };
+    let faces = value("faces").and_then(|n| n.parse().ok()).unwrap_or(usize::MAX);
     let cages: Vec<(String, Mesh)> = value("cages")
         .unwrap_or(FOLDERS)
         .split(',')
         .flat_map(|folder| common::clean_cages(&data, folder))
+        .filter(|(_, mesh)| mesh.counts()[2] <= faces)
         .collect();
     for kind in kinds.into_iter().filter(|kind| all || wanted(kind)) {
         let of_cage = |(name, mesh): &(String, Mesh)| {

@@ -12,7 +12,8 @@ pub struct Marked {
 
 impl Marked {
     fn new(mesh: &Mesh, marks: Vec<Mark>) -> Self {
-        let edge = marks.iter().map(|mark| mesh.edge_length(mark.half_edge)).sum::<f64>() / marks.len() as f64;
+        let edge =
+            marks.iter().map(|mark| mesh.edge_length(mark.half_edge)).sum::<f64>() / marks.len() as f64;
         Self { selection: Selection { marks, ..Selection::default() }, edge }
     }
 
@@ -33,7 +34,8 @@ pub fn rings(mesh: &Mesh) -> Vec<Marked> {
         }
         let edge = (mesh.source(h).0, mesh.target(h).0);
         let selector = Selector { shape: Shape::Ring { edge }, kind: "red".into() };
-        let Selection { marks, ends, .. } = Selection::resolve(mesh, &[selector]).expect("an edge of the mesh");
+        let Selection { marks, ends, .. } =
+            Selection::resolve(mesh, &[selector]).expect("an edge of the mesh");
         seen.extend(marks.iter().map(|mark| mark.half_edge.edge()));
         let lengths = || marks.iter().map(|mark| mesh.edge_length(mark.half_edge));
         let (low, high) = lengths().fold((f64::INFINITY, 0.0_f64), |(l, h), x| (l.min(x), h.max(x)));
