@@ -8,7 +8,8 @@ mod rings;
 use rings::{Marked, crossing, crossing_pairs, rings, tees};
 use welt::feature::{self, Options, Report, Request};
 use welt::job::Job;
-use welt::mesh::Mesh;
+use welt::mark::{Mark, Selection};
+use welt::mesh::{Mesh, Polygons, VertexId};
 use welt::optimise::Method;
 
 fn groove(mesh: &mut Mesh, ring: &Marked, depth: &str, method: Method, deviation: bool) -> Report {
@@ -223,4 +224,51 @@ fn junctions_of_depth_zero_are_no_worse_than_without_a_fit() {
     }
     closer.sort_by(f64::total_cmp);
     assert!(quantile(&closer, 0.5) > 3.0, "{closer:?}");
+}
+
+/// The same mesh with vertices, faces and corners in the opposite order (but the same orientation).
+fn renumbered(mesh: &Mesh) -> Mesh {
+    let polygons = mesh.to_polygons();
+    let last = polygons.positions.len() as u32 - 1;
+    let mut rest = polygons.face_vertices.as_slice();
+    let mut faces: Vec<Vec<u32>> = Vec::new();
+    for &size in &polygons.face_sizes {
+        let (face, others) = rest.split_at(size as usize);
+        faces.push(face.iter().cycle().skip(1).take(face.len()).map(|&v| last - v).collect());
+        rest = others;
+    }
+    let faces: Vec<&[u32]> = faces.iter().rev().map(Vec::as_slice).collect();
+    let positions = polygons.positions.iter().rev().copied().collect();
+    Mesh::from_polygons(&Polygons::new(positions, &faces)).expect("the same mesh")
+}
+
+/// Also beside folds, where vertices are held.
+#[test]
+fn fits_do_not_depend_on_the_numbering() {
+    let Some(data) = common::shared_data() else { return };
+    let mesh = common::load(&data.join("upholstery/bs0_chair2.obj"));
+    let other = renumbered(&mesh);
+    let last = mesh.vertex_bound() as u32 - 1;
+    let mut held = 0;
+    for ring in rings(&mesh).into_iter().step_by(11) {
+        let edge = |h| (last - mesh.source(h).0, last - mesh.target(h).0);
+        let marks = ring.selection.marks.iter().map(|mark| {
+            let (a, b) = edge(mark.half_edge);
+            let half_edge = other.find_half_edge(VertexId(a), VertexId(b)).expect("the same edge");
+            Mark { half_edge, ..mark.clone() }
+        });
+        let selection = Selection { marks: marks.collect(), ..Selection::default() };
+        let other_ring = Marked { selection, edge: ring.edge };
+        for method in [Method::Solve, Method::FitSlide] {
+            let (mut first, mut second) = (mesh.clone(), other.clone());
+            held += groove(&mut first, &ring, "0", method, false).fit.held;
+            groove(&mut second, &other_ring, "0", method, false);
+            for v in mesh.vertices() {
+                let apart = first.position(v).distance(second.position(VertexId(last - v.0)));
+                assert!(apart < 1e-5 * ring.edge, "{method:?}, vertex {}: {}", v.0, apart / ring.edge);
+            }
+        }
+    }
+    println!("{held} vertices were held");
+    assert!(held > 0);
 }
