@@ -66,11 +66,9 @@ pub(super) fn without_texcoords(mesh: &Mesh, changed: &[FaceId]) -> usize {
 }
 
 /// Faces whose limit surface can have changed: the surface of a face depends on the vertices of the faces around it,
-/// and the vertices of the faces around the changed ones may have moved.
-pub(super) fn affected_faces(mesh: &Mesh, changed: &[FaceId]) -> Vec<FaceId> {
-    let active = mesh.grow_faces(changed);
-    let moved = mesh.grow_faces(&active);
-    mesh.grow_faces(&moved)
+/// and the vertices of the changed faces and of so many rings of faces around them may have moved.
+pub(super) fn affected_faces(mesh: &Mesh, changed: &[FaceId], active_rings: usize) -> Vec<FaceId> {
+    (0..active_rings + 2).fold(changed.to_vec(), |faces, _| mesh.grow_faces(&faces))
 }
 
 /// Edges between vertices of one line, other than the pieces of marked edges.

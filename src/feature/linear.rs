@@ -80,7 +80,9 @@ impl Run<'_> {
         let measured = self.options.samples > 0;
         let sampling = Sampling { per_side: self.options.samples, threads: self.options.threads };
         let deepest = self.deepest();
-        let reference = measured.then(|| deviation::Reference::freeze(mesh, &crossed, footprint, sampling));
+        let active_rings = self.options.method.active_rings();
+        let reference =
+            measured.then(|| deviation::Reference::freeze(mesh, &crossed, footprint, sampling, active_rings));
         let walls = measured.then(|| deviation::Walls::around(mesh, &crossed, deepest));
         let mut target = Target::freeze(mesh, &region, job)?;
         self.clock.lap("freeze");

@@ -84,7 +84,10 @@ impl Run<'_> {
             warnings,
             green: pass.greens.iter().map(|green| green.vertex.0).collect(),
             feature_edges: feature_edges(mesh, &pass.lines),
-            affected: affected_faces(mesh, &pass.changed).into_iter().map(|f| f.0).collect(),
+            affected: affected_faces(mesh, &pass.changed, self.options.method.active_rings())
+                .into_iter()
+                .map(|f| f.0)
+                .collect(),
             times: self.clock.laps(),
         })
     }
