@@ -36,15 +36,18 @@ class Header(unittest.TestCase):
     def test_structs_have_the_layout_of_the_header(self):
         header = {}
         for body, name in re.findall(r"^typedef struct \{(.*?)\} (\w+);", code(), flags=re.S | re.M):
-            header[name] = re.findall(r"(\w+) (\w+)(?:\[(\d+)\])?;", body)
+            header[name] = re.findall(r"(\w+) (\**)(\w+)(?:\[(\d+)\])?;", body)
         self.assertEqual(set(header), set(_abi.STRUCTS))
         for name, members in header.items():
-            declared = []
-            for member, kind in _abi.STRUCTS[name]._fields_:
-                length = str(kind._length_) if issubclass(kind, ctypes.Array) else ""
-                plain = kind._type_ if length else kind
-                declared.append((next(c for c, t in _abi._VALUES.items() if t is plain), member, length))
-            self.assertEqual(declared, members, name)
+            declared = _abi.STRUCTS[name]._fields_
+            self.assertEqual([member for member, _ in declared], [member for _, _, member, _ in members], name)
+            for (member, kind), (plain, star, _, length) in zip(declared, members):
+                expected = _abi._VALUES[plain]
+                if length:
+                    expected = expected * int(length)
+                elif star:
+                    expected = ctypes.POINTER(expected)
+                self.assertIs(kind, expected, f"{name}.{member}")
 
     def test_types_are_those_of_the_prototypes(self):
         table = _abi.functions()

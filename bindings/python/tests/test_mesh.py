@@ -287,6 +287,32 @@ def arrays_shape(array):
     return tuple(array.shape)
 
 
+class Patches(unittest.TestCase):
+    def test_patches_of_a_cube(self):
+        patches = cube().patches()
+        self.assertEqual(patches.report()["patches"], len(patches))
+        self.assertEqual(sorted({f for patch in patches for f in patch.faces.tolist()}), list(range(6)))
+        limit = {tuple(round(x, 12) for x in p) for p in cube().limit_positions().tolist()}
+        corners = set()
+        first = patches[0].poles
+        for patch in patches:
+            rows = patch.poles.tolist()
+            corners.update(tuple(round(x, 12) for x in rows[j][i]) for j in (0, -1) for i in (0, -1))
+            self.assertEqual((len(patch.knots_u), len(patch.knots_v)), (len(rows[0]) + 4, len(rows) + 4))
+            for neighbour in patch.neighbours:
+                self.assertLess(neighbour, len(patches))
+        # A closed surface, whose patches end at the limit points of the vertices.
+        self.assertLessEqual(limit, corners)
+        with self.assertRaises(IndexError):
+            patches[len(patches)]
+        expected = patches[0].poles.tolist()
+        del patches, patch
+        gc.collect()
+        self.assertEqual(first.tolist(), expected)
+        with self.assertRaises(welt.ArgumentError):
+            cube().patches(most_faces=0)
+
+
 class Arrays(unittest.TestCase):
     def test_numbers_that_are_none(self):
         for faces, what in (([-1], "face"), ([2**32], "face"), ([1.5], "face"), (["one"], "face")):

@@ -32,6 +32,7 @@ from .errors import (
 from .job import Job
 from .marks import Parameter, Rules, Selection, features
 from .mesh import Deviation, Mesh
+from .patches import Patch, Patches
 from .surface import NONE, Refinement, Surface
 
 #: The version of the library that runs, such as "0.1.0".
@@ -54,6 +55,8 @@ __all__ = [
     "NONE",
     "Parameter",
     "ParseError",
+    "Patch",
+    "Patches",
     "Place",
     "PoisonedError",
     "Refinement",

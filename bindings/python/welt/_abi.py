@@ -100,11 +100,36 @@ class SurfacePoint(ctypes.Structure):
     ]
 
 
+class PatchOptions(ctypes.Structure):
+    _fields_ = [("struct_size", ctypes.c_uint32), ("most_faces", ctypes.c_uint32), ("tolerance", ctypes.c_double)]
+
+
+class Patch(ctypes.Structure):
+    _fields_ = [
+        ("poles", ctypes.POINTER(ctypes.c_double)),
+        ("knots_u", ctypes.POINTER(ctypes.c_double)),
+        ("knots_v", ctypes.POINTER(ctypes.c_double)),
+        ("faces", ctypes.POINTER(ctypes.c_uint32)),
+        ("face_count", ctypes.c_size_t),
+        ("degree_u", ctypes.c_uint32),
+        ("degree_v", ctypes.c_uint32),
+        ("pole_count_u", ctypes.c_uint32),
+        ("pole_count_v", ctypes.c_uint32),
+        ("neighbours", ctypes.c_uint32 * 4),
+        ("neighbour_sides", ctypes.c_uint32 * 4),
+        ("irregular", ctypes.c_uint32 * 4),
+        ("deviation", ctypes.c_double),
+        ("relative_deviation", ctypes.c_double),
+    ]
+
+
 STRUCTS = {
     "welt_import_options": ImportOptions,
     "welt_batch_options": BatchOptions,
     "welt_feature_options": FeatureOptions,
     "welt_surface_point": SurfacePoint,
+    "welt_patch_options": PatchOptions,
+    "welt_patch": Patch,
 }
 
 PROTOTYPES = """
@@ -173,8 +198,8 @@ int32_t welt_refinement_positions(const welt_refinement *refinement, uint32_t le
     welt_error **error);
 int32_t welt_refinement_face_vertices(const welt_refinement *refinement, uint32_t level, const uint32_t
     **vertices, welt_error **error);
-int32_t welt_refinement_mesh(const welt_refinement *refinement, uint32_t level, welt_mesh **mesh,
-    welt_error **error);
+int32_t welt_refinement_mesh(const welt_refinement *refinement, uint32_t level, welt_mesh **mesh, welt_error
+    **error);
 int32_t welt_refinement_vertex_parents(const welt_refinement *refinement, uint32_t level, uint32_t *kinds,
     uint32_t *elements, size_t capacity, welt_error **error);
 int32_t welt_refinement_face_parents(const welt_refinement *refinement, uint32_t level, uint32_t *faces,
@@ -237,12 +262,20 @@ int32_t welt_surface_first_hits(const welt_surface *surface, const double *lines
 int32_t welt_surface_all_hits(const welt_surface *surface, const double *lines, size_t count, double first,
     double last, const welt_batch_options *options, size_t *starts, size_t *needed, welt_surface_point *found,
     size_t capacity, welt_error **error);
+int32_t welt_patch_options_init(welt_patch_options *options, size_t size);
+int32_t welt_patches_create(const welt_mesh *mesh, const uint32_t *faces, size_t count, const
+    welt_patch_options *options, const welt_job *job, welt_patches **patches, welt_error **error);
+void welt_patches_free(welt_patches *patches);
+size_t welt_patches_count(const welt_patches *patches);
+int32_t welt_patches_get(const welt_patches *patches, size_t index, welt_patch *patch, welt_error **error);
+int32_t welt_patches_report(const welt_patches *patches, welt_report **report, welt_error **error);
 """
 
 _VALUES = {
     "int32_t": ctypes.c_int32,
     "uint32_t": ctypes.c_uint32,
     "size_t": ctypes.c_size_t,
+    "uint64_t": ctypes.c_uint64,
     "double": ctypes.c_double,
     "float": ctypes.c_float,
     "uint8_t": ctypes.c_uint8,

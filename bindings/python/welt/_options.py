@@ -7,7 +7,7 @@ import json
 import math
 from typing import Any, Dict, Mapping, Union
 
-from ._abi import CONSTANTS, BatchOptions, FeatureOptions, ImportOptions
+from ._abi import CONSTANTS, BatchOptions, FeatureOptions, ImportOptions, PatchOptions
 from ._library import raw
 from .errors import ArgumentError
 
@@ -59,6 +59,13 @@ def feature(fit: str, parity: str, strict: bool, deviation: bool) -> FeatureOpti
     options.fit, options.parity = constant("WELT_FIT_", fit), constant("WELT_PARITY_", parity)
     options.strict, options.deviation = int(strict), int(deviation)
     return options
+
+
+def patch(most_faces: int, tolerance: float) -> Any:
+    options = PatchOptions()
+    raw("welt_patch_options_init", options, ctypes.sizeof(options))
+    options.most_faces, options.tolerance = whole(most_faces, "most_faces"), tolerance
+    return ctypes.byref(options)
 
 
 def settings(given: Union[str, Mapping[str, Union[int, float, str]]]) -> bytes:

@@ -4,7 +4,7 @@ import os
 
 import FreeCAD
 
-from .objects import Proxy, add, cage_shape
+from .objects import Proxy, add, cage_shape, edited
 from .problems import Problem, library
 
 translate = FreeCAD.Qt.translate
@@ -38,6 +38,9 @@ class Cage(Proxy):
     def onChanged(self, obj, name):
         if name in ("File", "Repair", "Boundary"):
             self._mesh = None
+        if name == "File" and edited(obj) and "Points" in obj.PropertiesList:
+            # They are those of the file before.
+            obj.Points = []
 
     def mesh(self, obj):
         if getattr(self, "_mesh", None) is None:

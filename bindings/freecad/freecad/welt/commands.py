@@ -180,10 +180,21 @@ class MakeDeviation(Command):
         from .limit import make_deviation
 
         base, reference = chosen.chosen_meshes(selection, 2, translate("Welt", "two cages or features"))
-        for limit in base.InList:
-            if getattr(getattr(limit, "Proxy", None), "kind", "") == "limit":
-                limit.ViewObject.Visibility = False
+        chosen.hide_limits(base)
         make_deviation(base, reference)
+
+
+class MakeSolid(Command):
+    name = "Solid"
+    menu = QT_TRANSLATE_NOOP("Welt", "To solid")
+    tooltip = QT_TRANSLATE_NOOP("Welt", "Make a solid of B-spline faces (BRep) of the limit surface of a cage or a feature")
+
+    def run(self, document, selection):
+        from .solid import make_solid
+
+        base = chosen.chosen_meshes(selection, 1, translate("Welt", "one cage or feature"))[0]
+        chosen.hide_limits(base)
+        make_solid(base)
 
 
 FEATURES = ("Groove", "Ridge", "Piping", "Dent", "Step", "Bead", "Loop", "Rules")
@@ -191,13 +202,13 @@ MARKS = ("Edges", "Ring", "Path", "Loop")
 TOOLBARS = {
     QT_TRANSLATE_NOOP("Workbench", "Welt cage"): ["Welt_Cage"] + [f"Welt_Mark{name}" for name in MARKS],
     QT_TRANSLATE_NOOP("Workbench", "Welt features"): [f"Welt_{name}" for name in FEATURES],
-    QT_TRANSLATE_NOOP("Workbench", "Welt surface"): ["Welt_Limit", "Welt_Deviation"],
+    QT_TRANSLATE_NOOP("Workbench", "Welt surface"): ["Welt_Limit", "Welt_Deviation", "Welt_Solid"],
 }
 
 
 def register():
     """Makes the commands known to FreeCAD."""
-    commands = [ImportCage(), MakeLimit(), MakeDeviation()]
+    commands = [ImportCage(), MakeLimit(), MakeDeviation(), MakeSolid()]
     commands += [Mark(name) for name in MARKS] + [MakeFeature(name.lower()) for name in FEATURES]
     for command in commands:
         FreeCADGui.addCommand("Welt_" + command.name, command)

@@ -1,6 +1,7 @@
 """The limit surface of a cage or a feature, as a mesh object; and how far it is from another, as colours."""
 
 import io
+import math
 import struct
 
 import FreeCAD
@@ -28,7 +29,7 @@ class Limit(Proxy):
         return obj.Base
 
     def compute(self, obj):
-        positions, faces, _ = limit_mesh(mesh_of(obj.Base), obj.Level)
+        positions, faces = limit_mesh(mesh_of(obj.Base), obj.Level)
         obj.Mesh = faceted(positions, faces)
 
 
@@ -52,7 +53,7 @@ class Deviation(Limit):
         if obj.Reference is None:
             raise Problem(translate("Welt", "There is nothing to compare with: set the property Reference to a cage or feature"))
         reference = mesh_of(obj.Reference).freeze()
-        positions, faces, _ = limit_mesh(mesh_of(obj.Base), obj.Level)
+        positions, faces = limit_mesh(mesh_of(obj.Base), obj.Level)
         found = reference.closest(positions, threads=0)
         distances = [float(d) for d in (found["distance"] if hasattr(found, "dtype") else (p.distance for p in found))]
         obj.Mesh = faceted(positions, faces)
@@ -68,21 +69,39 @@ class Deviation(Limit):
 
 
 def limit_mesh(mesh, level):
-    """Points of the limit surface, the vertices of its faces one after the other, and their number per face."""
-    fine = mesh.refine(level).mesh(level) if level else mesh
-    return fine.limit_positions(), fine.faces, fine.vertex_count
+    """Points of the limit surface, (n, 3) numbers, and the vertices of its faces."""
+    refined = mesh.refine(level)
+    # The control face of each face.
+    faces = range(mesh.face_count)
+    for number in range(1, level + 1):
+        faces = [faces[parent] for parent in refined.face_parents(number)[0].tolist()]
+    fine = refined.mesh(level)
+    positions, polygons = fine.limit_positions().tolist(), fine.faces
+    absent = set(absent_faces(mesh))
+    if not absent:
+        return positions, polygons
+    kept = [polygon for polygon, face in zip(polygons, faces) if face not in absent]
+    used = sorted({vertex for polygon in kept for vertex in polygon})
+    number_of = {vertex: number for number, vertex in enumerate(used)}
+    return [positions[vertex] for vertex in used], [[number_of[vertex] for vertex in polygon] for polygon in kept]
+
+
+def absent_faces(mesh):
+    """Faces that are no part of the surface: holes, and what the boundary rule leaves out."""
+    count = mesh.face_count
+    middles = mesh.freeze().evaluate(range(count), [(0.5, 0.5)] * count).tolist()
+    return [face for face, ((x, *_),) in enumerate(middles) if math.isnan(x)]
 
 
 def faceted(positions, faces):
     """A mesh of FreeCAD, through a binary PLY: the quick way in, and the one that keeps the numbers of vertices."""
     triangles = [(face[0], face[i], face[i + 1]) for face in faces for i in range(1, len(face) - 1)]
-    points = positions.tolist()
     head = (
         "ply\nformat binary_little_endian 1.0\n"
-        f"element vertex {len(points)}\nproperty float x\nproperty float y\nproperty float z\n"
+        f"element vertex {len(positions)}\nproperty float x\nproperty float y\nproperty float z\n"
         f"element face {len(triangles)}\nproperty list uchar int vertex_indices\nend_header\n"
     )
-    body = b"".join([struct.pack("<3f", *p) for p in points] + [struct.pack("<B3i", 3, *t) for t in triangles])
+    body = b"".join([struct.pack("<3f", *p) for p in positions] + [struct.pack("<B3i", 3, *t) for t in triangles])
     result = Mesh.Mesh()
     result.read(Stream=io.BytesIO(head.encode() + body), Format="PLY")
     return result

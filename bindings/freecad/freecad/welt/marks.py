@@ -3,7 +3,7 @@
 import FreeCAD
 import Part
 
-from .objects import Proxy, add, has_mesh, mesh_of
+from .objects import Proxy, add, edited, has_mesh, mesh_of
 from .problems import Problem
 
 translate = FreeCAD.Qt.translate
@@ -43,7 +43,7 @@ class Marks(Proxy):
         return base_of(obj)
 
     def onChanged(self, obj, name):
-        if name == "Elements" and not obj.Document.Restoring and "Known" in obj.PropertiesList:
+        if name == "Elements" and edited(obj) and "Known" in obj.PropertiesList:
             obj.Known = []
 
     def compute(self, obj):

@@ -58,6 +58,11 @@ def add(obj, kind, name, group, tooltip, value=None):
         setattr(obj, name, value)
 
 
+def edited(obj):
+    """Whether a property changes because somebody sets it, and not because a document is opened, or something undone."""
+    return not obj.Document.Restoring and not obj.Document.Transacting
+
+
 def has_mesh(obj):
     """Whether an object gives a control mesh: a cage, or a feature on one."""
     return callable(getattr(getattr(obj, "Proxy", None), "mesh", None))

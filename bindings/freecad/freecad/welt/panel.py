@@ -107,7 +107,9 @@ class Panel:
             self.message.setText("\n".join(obj.Warnings))
 
     def getStandardButtons(self):
-        return int(QtGui.QDialogButtonBox.Ok | QtGui.QDialogButtonBox.Cancel)
+        buttons = QtGui.QDialogButtonBox.Ok | QtGui.QDialogButtonBox.Cancel
+        # Newer versions of Qt for Python have enumerations here.
+        return buttons.value if hasattr(buttons, "value") else int(buttons)
 
     def accept(self):
         self.timer.stop()

@@ -55,8 +55,18 @@ def follow(obj):
     """Lets the limit surfaces of a feature's base show the feature, or makes one; gives them."""
     from .limit import make_limit
 
-    base = base_of(obj.Marks[0])
-    shown = [o for o in base.InList if getattr(getattr(o, "Proxy", None), "kind", "") == "limit" and o.Base == base]
+    shown = limits_of(base_of(obj.Marks[0]))
     for limit in shown:
         limit.Base = obj
     return shown or [make_limit(obj)]
+
+
+def limits_of(base):
+    """The limit surfaces that show a cage or feature."""
+    return [o for o in base.InList if getattr(getattr(o, "Proxy", None), "kind", "") == "limit" and o.Base == base]
+
+
+def hide_limits(base):
+    """Makes room for what shows the same surface."""
+    for limit in limits_of(base):
+        limit.ViewObject.Visibility = False
