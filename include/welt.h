@@ -7,7 +7,8 @@
  *
  * Status: functions that can fail return WELT_OK or one of WELT_ERROR_*, which are negative; numbers are never reused. Their
  * last parameter, error, may be NULL. Otherwise it receives NULL on success and an error on failure, which the caller
- * frees with welt_error_free; what it held before is overwritten without being freed. Results are written only on success.
+ * frees with welt_error_free; what it held before is overwritten without being freed. Results are written only on success;
+ * but a call that returns WELT_ERROR_INTERNAL may have written some of what it writes to a buffer of the caller.
  *
  * Threads: there is no global state. Calls on different handles may run at the same time. A parameter "const welt_x *" is
  * only read: any number of threads may pass the same handle to such parameters at the same time. A parameter

@@ -217,7 +217,11 @@ fn marks_name_their_feature() {
 #[test]
 fn settings_that_make_no_sense_are_refused() {
     let cases = [
-        (&["groove"][..], "height=1", "groove has no parameter 'height'; it has width, depth, taper"),
+        (
+            &["groove"][..],
+            "height=1",
+            "groove has no parameter 'height'; it has width, depth, paper_tees, taper",
+        ),
         (&["groove"], "depth=-1", "it must not be less than 0"),
         (&["loop"], "count=1.5", "it is a whole number"),
         (&["loop"], "count=17", "it lies between 1 and 16"),
@@ -296,6 +300,9 @@ fn mistakes_in_profiles_name_file_and_line() {
         ("across = 0.5", "across = ", 29, ""),
     ];
     assert!(Profile::parse("twin.toml", TWIN).is_ok());
+    let absent = Profile::named("absent.toml").expect_err("no file").to_string();
+    assert!(absent.starts_with("cannot read the profile file absent.toml: "), "{absent}");
+    assert!(absent.contains("the folder profiles") && absent.contains("groove, ridge"), "{absent}");
     for (from, to, line, message) in cases {
         let error = Profile::parse("twin.toml", &TWIN.replacen(from, to, 1)).expect_err(to).to_string();
         println!("{error}");

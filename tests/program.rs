@@ -195,6 +195,35 @@ fn a_typo_in_a_rule_file() {
     folder.welt(&["rules", "check", shipped.to_str().unwrap()]).succeeds();
 }
 
+/// Each names rule, file and place, and nothing is written. (Runaway rules: tests/rules.rs.)
+#[test]
+fn rules_that_fail_while_they_run() {
+    let folder = Folder::new("failing");
+    let cases = [
+        ("rule Tear { e(color) }\naction {\n  e vertexCW killEV\n  e killEF e killEF\n}\n", "Tear"),
+        (
+            "rule Flat { e(color) }\naction { e \"color\" attrdel e e vertexpos makeEVone pop e killEF }\n",
+            "Flat",
+        ),
+        ("rule Throw { e(color) }\naction {\n  \"no way\" throw\n}\n", "Throw"),
+    ];
+    for (text, rule) in cases {
+        fs::write(folder.0.join("own.rules"), text).unwrap();
+        let run = folder.welt(&[
+            "apply",
+            "sheet.obj",
+            "-o",
+            "out.obj",
+            "--rules",
+            "own.rules",
+            "--mark",
+            "edge:1,5",
+        ]);
+        run.fails(1, &[&format!("rule {rule} "), "own.rules:", "near (1, ", "|"]);
+        assert_eq!(folder.files(), ["own.rules", "sheet.obj"], "{rule}");
+    }
+}
+
 #[test]
 fn files_that_cannot_be_read_or_written() {
     let folder = Folder::new("files");

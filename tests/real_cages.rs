@@ -2,49 +2,17 @@
 //! closer the fit brings the surface to what it was.
 
 mod common;
+#[path = "common/rings.rs"]
+mod rings;
 
-use rustc_hash::FxHashSet;
+use rings::{Marked, crossing, crossing_pairs, rings, tees};
 use welt::feature::{self, Options, Report, Request};
 use welt::job::Job;
-use welt::mark::{Selection, Selector, Shape};
-use welt::mesh::{FaceId, Mesh};
+use welt::mark::{Mark, Selection};
+use welt::mesh::{Mesh, Polygons, VertexId};
 use welt::optimise::Method;
 
-/// A closed ring of quads that crosses no face twice.
-struct Ring {
-    selection: Selection,
-    /// Mean length of its edges.
-    edge: f64,
-}
-
-/// The rings of a mesh of 6 edges or more whose longest edge is under 8 times its shortest.
-fn rings(mesh: &Mesh) -> Vec<Ring> {
-    let mut seen: FxHashSet<u32> = FxHashSet::default();
-    let mut rings = Vec::new();
-    for h in mesh.edges() {
-        if seen.contains(&h.edge()) {
-            continue;
-        }
-        let edge = (mesh.source(h).0, mesh.target(h).0);
-        let selector = Selector { shape: Shape::Ring { edge }, kind: "red".into() };
-        let selection = Selection::resolve(mesh, &[selector]).expect("an edge of the mesh");
-        seen.extend(selection.marks.iter().map(|mark| mark.half_edge.edge()));
-        let lengths: Vec<f64> = selection.marks.iter().map(|mark| mesh.edge_length(mark.half_edge)).collect();
-        let (low, high) = lengths.iter().fold((f64::INFINITY, 0.0_f64), |(l, h), &x| (l.min(x), h.max(x)));
-        let faces: FxHashSet<FaceId> = selection.marks.iter().map(|mark| mesh.face(mark.half_edge)).collect();
-        if selection.ends.is_empty()
-            && selection.marks.len() >= 6
-            && faces.len() == selection.marks.len()
-            && high < 8.0 * low
-        {
-            let edge = lengths.iter().sum::<f64>() / lengths.len() as f64;
-            rings.push(Ring { selection, edge });
-        }
-    }
-    rings
-}
-
-fn groove(mesh: &mut Mesh, ring: &Ring, depth: &str, method: Method, deviation: bool) -> Report {
+fn groove(mesh: &mut Mesh, ring: &Marked, depth: &str, method: Method, deviation: bool) -> Report {
     let request =
         Request::features(&["groove"], &["width=30%", &format!("depth={depth}")]).expect("a request");
     let options = Options { method, samples: if deviation { 3 } else { 0 }, ..Options::default() };
@@ -193,7 +161,7 @@ impl Row {
         all.for_each(|values| values.sort_by(f64::total_cmp));
     }
 
-    /// One row of the table of docs/optimisation.md: medians, and the tenth that is worst in brackets.
+    /// Medians, and the tenth that is worst in brackets.
     fn print(&self) {
         let [max, rms, p95, normal] = &self.deviation;
         let pair = |values: &[f64], worst: f64| {
@@ -230,14 +198,77 @@ fn depth_zero_leaves_the_surface_where_it_was() {
     }
 }
 
-/// The table of docs/optimisation.md.
+/// Where rings cross and where bands end in T-junctions, `fit+slide` ends no further from the surface than an
+/// insertion without a fit.
 #[test]
-#[ignore = "takes some minutes: cargo test --release --test real_cages -- --ignored --nocapture"]
-fn depth_zero_on_all_rings() {
+fn junctions_of_depth_zero_are_no_worse_than_without_a_fit() {
     let Some(data) = common::shared_data() else { return };
-    let methods = [Method::None, Method::Loop, Method::Solve, Method::Fit, Method::FitSlide];
-    let step = ring_step(1);
-    let rows = depth_zero(&data, &methods, step);
-    println!("{} rings", rows[0].time.len());
-    rows.iter().for_each(Row::print);
+    let mut closer = Vec::new();
+    for (name, mesh) in common::clean_cages(&data, "product").into_iter().step_by(4) {
+        let rings = rings(&mesh);
+        for pair in crossing_pairs(&mesh, &rings).into_iter().step_by(24) {
+            let pair = pair.map(|number| &rings[number]);
+            for marked in [Some(crossing(&mesh, pair)), tees(&mesh, pair)].into_iter().flatten() {
+                let insert = |method| {
+                    let report = groove(&mut mesh.clone(), &marked, "0", method, true);
+                    report.fitted.unwrap_or_else(|| panic!("{name}: no deviation")).total
+                };
+                let (none, fitted) = (insert(Method::None), insert(Method::FitSlide));
+                if none.rms > 1e-3 * marked.edge {
+                    println!("{name}: {:.3e} {:.3e}", none.rms, fitted.rms);
+                    assert!(fitted.rms < 1.05 * none.rms, "{name}: {} {}", fitted.rms, none.rms);
+                    closer.push(none.rms / fitted.rms);
+                }
+            }
+        }
+    }
+    closer.sort_by(f64::total_cmp);
+    assert!(quantile(&closer, 0.5) > 3.0, "{closer:?}");
+}
+
+/// The same mesh with vertices, faces and corners in the opposite order (but the same orientation).
+fn renumbered(mesh: &Mesh) -> Mesh {
+    let polygons = mesh.to_polygons();
+    let last = polygons.positions.len() as u32 - 1;
+    let mut rest = polygons.face_vertices.as_slice();
+    let mut faces: Vec<Vec<u32>> = Vec::new();
+    for &size in &polygons.face_sizes {
+        let (face, others) = rest.split_at(size as usize);
+        faces.push(face.iter().cycle().skip(1).take(face.len()).map(|&v| last - v).collect());
+        rest = others;
+    }
+    let faces: Vec<&[u32]> = faces.iter().rev().map(Vec::as_slice).collect();
+    let positions = polygons.positions.iter().rev().copied().collect();
+    Mesh::from_polygons(&Polygons::new(positions, &faces)).expect("the same mesh")
+}
+
+/// Also beside folds, where vertices are held.
+#[test]
+fn fits_do_not_depend_on_the_numbering() {
+    let Some(data) = common::shared_data() else { return };
+    let mesh = common::load(&data.join("upholstery/bs0_chair2.obj"));
+    let other = renumbered(&mesh);
+    let last = mesh.vertex_bound() as u32 - 1;
+    let mut held = 0;
+    for ring in rings(&mesh).into_iter().step_by(11) {
+        let edge = |h| (last - mesh.source(h).0, last - mesh.target(h).0);
+        let marks = ring.selection.marks.iter().map(|mark| {
+            let (a, b) = edge(mark.half_edge);
+            let half_edge = other.find_half_edge(VertexId(a), VertexId(b)).expect("the same edge");
+            Mark { half_edge, ..mark.clone() }
+        });
+        let selection = Selection { marks: marks.collect(), ..Selection::default() };
+        let other_ring = Marked { selection, edge: ring.edge };
+        for method in [Method::Solve, Method::FitSlide] {
+            let (mut first, mut second) = (mesh.clone(), other.clone());
+            held += groove(&mut first, &ring, "0", method, false).fit.held;
+            groove(&mut second, &other_ring, "0", method, false);
+            for v in mesh.vertices() {
+                let apart = first.position(v).distance(second.position(VertexId(last - v.0)));
+                assert!(apart < 1e-5 * ring.edge, "{method:?}, vertex {}: {}", v.0, apart / ring.edge);
+            }
+        }
+    }
+    println!("{held} vertices were held");
+    assert!(held > 0);
 }

@@ -64,6 +64,20 @@ inline double median(int runs, const std::function<double()>& work) {
     return times[times.size() / 2];
 }
 
+/// The medians of ours and theirs, run in turns, so that what else the machine does meets both.
+struct Pair {
+    double ours, theirs;
+};
+inline Pair in_turns(int runs, const std::function<double()>& ours, const std::function<double()>& theirs) {
+    std::vector<double> first, second;
+    for (int i = 0; i < runs; ++i) {
+        first.push_back(ours());
+        second.push_back(theirs());
+    }
+    for (auto* times : {&first, &second}) std::sort(times->begin(), times->end());
+    return {first[first.size() / 2], second[second.size() / 2]};
+}
+
 inline void check(std::int32_t status) {
     if (status != WELT_OK) {
         std::fprintf(stderr, "welt: status %d\n", status);

@@ -1,5 +1,6 @@
 // Times welt (through its C ABI) beside OpenSubdiv and OpenMesh, in one run and on the same meshes: tori of quads.
-// Medians; memory is fresh in every run, as it is for a program that does the work once.
+// Medians of runs in turns. Memory is fresh in every run, as it is for a program that does the work once, but for refinement
+// with reused memory: there malloc keeps what was freed, for both, and the first run is not counted.
 
 #include "common.hpp"
 
@@ -9,6 +10,8 @@
 
 #include <sstream>
 #include <string>
+
+#include <malloc.h>
 
 namespace {
 
@@ -34,27 +37,35 @@ OpenMeshPolygons build_open_mesh(const Quads& quads) {
     return mesh;
 }
 
-void row(const char* work, std::size_t faces, double ours, const char* peer, double theirs) {
-    std::printf("| %-44s | %8zu | %9.2f | %-22s | %9.2f | %5.1f |\n", work, faces, 1e3 * ours, peer, 1e3 * theirs,
-                theirs / ours);
+// Whether malloc keeps large arrays that were freed, or gives them back and has new pages for each.
+void keep_memory(bool keep) {
+    constexpr int small = 64 << 10;
+    mallopt(M_MMAP_THRESHOLD, keep ? INT32_MAX : small);
+    mallopt(M_TRIM_THRESHOLD, keep ? INT32_MAX : small);
+    malloc_trim(0);
+}
+
+void row(const char* work, std::size_t faces, Pair times, const char* peer) {
+    std::printf("| %-48s | %8zu | %9.2f | %-22s | %9.2f | %5.1f |\n", work, faces, 1e3 * times.ours, peer,
+                1e3 * times.theirs, times.theirs / times.ours);
     std::fflush(stdout);
 }
 
 void half_edges(const Quads& quads, int runs) {
-    const double ours = median(runs, [&] {
+    const auto ours = [&] {
         WeltMesh mesh;
         return seconds([&] { mesh = build(quads); });
-    });
-    const double open_mesh = median(runs, [&] {
+    };
+    const auto open_mesh = [&] {
         OpenMeshPolygons mesh;
         return seconds([&] { mesh = build_open_mesh(quads); });
-    });
-    row("half-edges from face lists", quads.faces(), ours, "OpenMesh add_face", open_mesh);
-    const double osd = median(runs, [&] {
+    };
+    const auto osd = [&] {
         std::unique_ptr<Far::TopologyRefiner> refiner;
         return seconds([&] { refiner = build_refiner(quads); });
-    });
-    row("half-edges from face lists", quads.faces(), ours, "OpenSubdiv refiner", osd);
+    };
+    row("half-edges from face lists", quads.faces(), in_turns(runs, ours, open_mesh), "OpenMesh add_face");
+    row("half-edges from face lists", quads.faces(), in_turns(runs, ours, osd), "OpenSubdiv refiner");
 }
 
 void reading(const Quads& quads, int runs) {
@@ -70,7 +81,7 @@ void reading(const Quads& quads, int runs) {
         text << '\n';
     }
     const std::string obj = text.str();
-    const double ours = median(runs, [&] {
+    const auto ours = [&] {
         WeltMesh mesh;
         return seconds([&] {
             welt_mesh* handle = nullptr;
@@ -79,30 +90,30 @@ void reading(const Quads& quads, int runs) {
                                           &handle, nullptr, nullptr));
             mesh.reset(handle);
         });
-    });
-    const double open_mesh = median(runs, [&] {
+    };
+    const auto open_mesh = [&] {
         std::istringstream in(obj);
         OpenMeshPolygons mesh;
         return seconds([&] {
             OpenMesh::IO::Options options;
             if (!OpenMesh::IO::read_mesh(mesh, in, ".obj", options)) std::exit(1);
         });
-    });
-    row("OBJ text in memory to half-edges", quads.faces(), ours, "OpenMesh read_mesh", open_mesh);
+    };
+    row("OBJ text in memory to half-edges", quads.faces(), in_turns(runs, ours, open_mesh), "OpenMesh read_mesh");
 }
 
 void refining(const Quads& quads, int levels, int runs) {
     const WeltMesh mesh = build(quads);
-    const double ours = median(runs, [&] {
+    const auto ours = [&] {
         welt_refinement* refinement = nullptr;
         const double time = seconds([&] {
             check(welt_refinement_create(mesh.get(), levels, nullptr, &refinement, nullptr));
         });
         welt_refinement_free(refinement);
         return time;
-    });
+    };
     const std::vector<Point> control = points(quads);
-    const double osd = median(runs, [&] {
+    const auto osd = [&] {
         auto refiner = build_refiner(quads);
         return seconds([&] {
             refiner->RefineUniform(Far::TopologyRefiner::UniformOptions(levels));
@@ -114,19 +125,23 @@ void refining(const Quads& quads, int levels, int runs) {
                 from.swap(to);
             }
         });
-    });
-    row("refinement to level 3, topology and positions", quads.faces(), ours, "OpenSubdiv", osd);
+    };
+    row("refinement to level 3, memory fresh", quads.faces(), in_turns(runs, ours, osd), "OpenSubdiv");
+    keep_memory(true);
+    in_turns(1, ours, osd);
+    row("refinement to level 3, memory reused", quads.faces(), in_turns(runs, ours, osd), "OpenSubdiv");
+    keep_memory(false);
 }
 
 void limits(const Quads& quads, int runs) {
     const WeltMesh mesh = build(quads);
     std::vector<double> positions(quads.positions.size()), normals(quads.positions.size());
-    const double ours = median(runs, [&] {
+    const auto ours = [&] {
         return seconds([&] {
             check(welt_mesh_limit_positions(mesh.get(), positions.data(), positions.size(), nullptr));
             check(welt_mesh_limit_normals(mesh.get(), normals.data(), normals.size(), nullptr));
         });
-    });
+    };
     auto refiner = build_refiner(quads);
     Far::TopologyRefiner::UniformOptions options(1);
     options.fullTopologyInLastLevel = true;
@@ -136,15 +151,16 @@ void limits(const Quads& quads, int runs) {
     std::vector<Point> level1(refiner->GetLevel(1).GetNumVertices());
     primvar.Interpolate(1, control, level1);
     std::vector<Point> limit(level1.size()), du(level1.size()), dv(level1.size());
-    const double osd = median(runs, [&] { return seconds([&] { primvar.Limit(level1, limit, du, dv); }); });
     // OpenSubdiv gives limits on the last level only, which has four times the vertices.
-    row("limit points and normals at vertices", quads.faces(), ours, "OpenSubdiv Limit / 4", osd / 4);
+    const auto osd = [&] { return seconds([&] { primvar.Limit(level1, limit, du, dv); }) / 4; };
+    row("limit points and normals at vertices", quads.faces(), in_turns(runs, ours, osd), "OpenSubdiv Limit / 4");
 }
 
 }  // namespace
 
 int main() {
-    std::printf("| %-44s | %8s | %9s | %-22s | %9s | %5s |\n", "work", "quads", "welt, ms", "peer", "peer, ms", "ratio");
+    keep_memory(false);
+    std::printf("| %-48s | %8s | %9s | %-22s | %9s | %5s |\n", "work", "quads", "welt, ms", "peer", "peer, ms", "ratio");
     std::printf("|---|---|---|---|---|---|\n");
     struct Size {
         std::uint32_t n, m;

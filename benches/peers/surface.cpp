@@ -1,6 +1,6 @@
 // Evaluation of the limit surface and queries on it, through the C ABI, beside OpenSubdiv's Bfr and Far. One thread.
 //
-// Nanoseconds per point, medians. Both write into arrays that were written before. "kept": the surface of every face was
+// Nanoseconds per point, medians of runs in turns. Both write into arrays that were written before. "kept": the surface of every face was
 // made beforehand, of welt as of Bfr (Surface and patch points per face, in double precision); "fresh": Bfr makes the surface of
 // a face when the face changes, as its own examples do, which needs no memory for the mesh.
 
@@ -82,19 +82,20 @@ template <class Real> void evaluate(const Bfr::Surface<Real>& surface, const Rea
 const char* const orders[] = {"position", "position, 1st", "position, 1st, 2nd"};
 constexpr int widths[] = {3, 9, 18};
 
-void print(const char* mesh, std::size_t faces, const std::string& work, double ours, const char* peer, double theirs) {
-    std::printf("| %-9s | %8zu | %-28s | %7.1f | %-20s | %8.1f | %5.1f |\n", mesh, faces, work.c_str(), 1e9 * ours, peer,
-                1e9 * theirs, theirs / ours);
+void print(const char* mesh, std::size_t faces, const std::string& work, Pair times, const char* peer) {
+    std::printf("| %-9s | %8zu | %-28s | %7.1f | %-20s | %8.1f | %5.1f |\n", mesh, faces, work.c_str(), 1e9 * times.ours, peer,
+                1e9 * times.theirs, times.theirs / times.ours);
     std::fflush(stdout);
 }
 
 template <class Real>
-double bfr_time(const Factory& factory, const Quads& quads, const Batch& batch, int order, int runs, const Kept<Real>* kept) {
+Pair bfr_times(const std::function<double()>& ours, const Factory& factory, const Quads& quads, const Batch& batch, int order,
+               int runs, const Kept<Real>* kept) {
     const auto positions = positions_of<Real>(quads);
     const std::vector<Real> parameters(batch.parameters.begin(), batch.parameters.end());
     std::vector<Real> values(widths[order] * batch.size(), 1), points;
     typename Bfr::Surface<Real>::PointDescriptor const three(3);
-    return median(runs, [&] {
+    return in_turns(runs, ours, [&] {
         return seconds([&] {
             Bfr::Surface<Real> fresh;
             std::uint32_t last = UINT32_MAX;
@@ -113,8 +114,8 @@ double bfr_time(const Factory& factory, const Quads& quads, const Batch& batch, 
                 }
                 evaluate(fresh, &parameters[2 * i], points.data(), order, &values[widths[order] * i]);
             }
-        });
-    }) / batch.size();
+        }) / batch.size();
+    });
 }
 
 void evaluation(const char* name, const Quads& quads, int runs) {
@@ -129,17 +130,17 @@ void evaluation(const char* name, const Quads& quads, int runs) {
         const Batch batch = points_on(quads.faces(), count, sorted);
         for (int order = 0; order < 3; ++order) {
             std::vector<double> values(widths[order] * count, 1);
-            const double ours = median(runs, [&] {
+            const auto ours = [&] {
                 return seconds([&] {
                     check(welt_surface_evaluate(surface.get(), batch.faces.data(), nullptr, batch.parameters.data(), count,
                                                 order, nullptr, values.data(), values.size(), nullptr));
-                });
-            }) / count;
+                }) / count;
+            };
             const std::string work = std::string(sorted ? "sorted, " : "random, ") + orders[order];
-            print(name, quads.faces(), work, ours, "Bfr double, kept", bfr_time(factory, quads, batch, order, runs, &doubles));
-            print(name, quads.faces(), work, ours, "Bfr float, kept", bfr_time(factory, quads, batch, order, runs, &floats));
-            print(name, quads.faces(), work, ours, "Bfr double, fresh",
-                  bfr_time<double>(factory, quads, batch, order, std::min(runs, 3), nullptr));
+            print(name, quads.faces(), work, bfr_times(ours, factory, quads, batch, order, runs, &doubles), "Bfr double, kept");
+            print(name, quads.faces(), work, bfr_times(ours, factory, quads, batch, order, runs, &floats), "Bfr float, kept");
+            print(name, quads.faces(), work,
+                  bfr_times<double>(ours, factory, quads, batch, order, std::min(runs, 3), nullptr), "Bfr double, fresh");
         }
     }
 }
@@ -172,19 +173,19 @@ Quads refined_triangles(std::uint32_t n, int levels) {
 
 void initialisation(const char* name, const Quads& quads, int runs) {
     const WeltMesh mesh = build(quads);
-    const double ours = median(runs, [&] {
+    const auto ours = [&] {
         WeltSurface surface;
-        return seconds([&] { surface = freeze(mesh); });
-    }) / quads.faces();
+        return seconds([&] { surface = freeze(mesh); }) / quads.faces();
+    };
     const auto refiner = build_refiner(quads);
     const auto positions = positions_of<double>(quads);
     Bfr::Surface<double>::PointDescriptor const three(3);
     const auto bfr = [&](bool caching, bool kept) {
-        return median(runs, [&] {
+        return in_turns(runs, ours, [&] {
             Factory::Options options;
             options.EnableCaching(caching);
             const Factory factory(*refiner, options);
-            if (kept) return seconds([&] { keep<double>(factory, quads); });
+            if (kept) return seconds([&] { keep<double>(factory, quads); }) / quads.faces();
             std::vector<double> points;
             return seconds([&] {
                 Bfr::Surface<double> surface;
@@ -193,13 +194,13 @@ void initialisation(const char* name, const Quads& quads, int runs) {
                     points.resize(3 * surface.GetNumPatchPoints());
                     surface.PreparePatchPoints(positions.data(), three, points.data(), three);
                 }
-            });
-        }) / quads.faces();
+            }) / quads.faces();
+        });
     };
-    print(name, quads.faces(), "initialisation", ours, "Bfr, cold", bfr(false, false));
-    print(name, quads.faces(), "initialisation", ours, "Bfr, caching", bfr(true, false));
-    print(name, quads.faces(), "initialisation", ours, "Bfr, caching, kept", bfr(true, true));
-    const double far = median(std::min(runs, 3), [&] {
+    print(name, quads.faces(), "initialisation", bfr(false, false), "Bfr, cold");
+    print(name, quads.faces(), "initialisation", bfr(true, false), "Bfr, caching");
+    print(name, quads.faces(), "initialisation", bfr(true, true), "Bfr, caching, kept");
+    const Pair far = in_turns(std::min(runs, 3), ours, [&] {
         return seconds([&] {
             const auto adaptive = build_refiner(quads);
             Far::PatchTableFactory::Options options(6);
@@ -216,9 +217,9 @@ void initialisation(const char* name, const Quads& quads, int runs) {
                 primvar.Interpolate(level, from, to);
                 from = to;
             }
-        });
-    }) / quads.faces();
-    print(name, quads.faces(), "initialisation", ours, "Far, adaptive level 6", far);
+        }) / quads.faces();
+    });
+    print(name, quads.faces(), "initialisation", far, "Far, adaptive level 6");
 }
 
 void queries(std::uint32_t n, std::uint32_t m, int runs) {

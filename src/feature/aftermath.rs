@@ -30,8 +30,11 @@ pub(super) fn settle(mesh: &mut Mesh, has_features: bool, edges: &[(u32, u32)]) 
         mesh.set_attribute(Node::HalfEdge(h), unresolved, Some(kind));
     }
     for (domain, names) in [
-        (Domain::HalfEdge, &["cuts", "lines", "mark", "places", "kind", "color", "skew", "t"][..]),
-        (Domain::Vertex, &["mark", "line", "kind", "cross", "crosskind", "hold"][..]),
+        (
+            Domain::HalfEdge,
+            &["cuts", "lines", "mark", "places", "kind", "color", "skew", "end", "adjusted", "t"][..],
+        ),
+        (Domain::Vertex, &["mark", "line", "kind", "cross", "crosskind", "hold", "away"][..]),
     ] {
         for name in names {
             let name = mesh.intern(name);
@@ -66,11 +69,9 @@ pub(super) fn without_texcoords(mesh: &Mesh, changed: &[FaceId]) -> usize {
 }
 
 /// Faces whose limit surface can have changed: the surface of a face depends on the vertices of the faces around it,
-/// and the vertices of the faces around the changed ones may have moved.
-pub(super) fn affected_faces(mesh: &Mesh, changed: &[FaceId]) -> Vec<FaceId> {
-    let active = mesh.grow_faces(changed);
-    let moved = mesh.grow_faces(&active);
-    mesh.grow_faces(&moved)
+/// and the vertices of the changed faces and of so many rings of faces around them may have moved.
+pub(super) fn affected_faces(mesh: &Mesh, changed: &[FaceId], active_rings: usize) -> Vec<FaceId> {
+    (0..active_rings + 2).fold(changed.to_vec(), |faces, _| mesh.grow_faces(&faces))
 }
 
 /// Edges between vertices of one line, other than the pieces of marked edges.

@@ -8,9 +8,6 @@ use crate::mesh::{FaceId, Mesh};
 use crate::surface::{Deviation, DeviationSample, LimitSurface, Sampling, deviation_samples};
 use glam::DVec3;
 
-/// Rings of faces around the crossed ones that are frozen: the affected ones and one more, where feet may lie.
-const RINGS: usize = 5;
-
 /// The surface as it was around a feature, for the report.
 pub(super) struct Reference {
     surface: LimitSurface,
@@ -19,20 +16,23 @@ pub(super) struct Reference {
     /// Bounding box diagonal of the mesh before.
     size: f64,
     sampling: Sampling,
+    active_rings: usize,
 }
 
 impl Reference {
+    /// `active_rings` of faces round the changed ones may move.
     pub(super) fn freeze(
         mesh: &Mesh,
         crossed: &[FaceId],
         footprint: Vec<FaceId>,
         sampling: Sampling,
+        active_rings: usize,
     ) -> Self {
-        let mut faces = crossed.to_vec();
-        for _ in 0..RINGS {
-            faces = mesh.grow_faces(&faces);
-        }
-        Self { surface: LimitSurface::around(mesh, &faces), footprint, size: mesh.size(), sampling }
+        // Rules change the faces round the crossed ones; feet may lie beside the affected faces.
+        let mut faces = affected_faces(mesh, &mesh.grow_faces(crossed), active_rings);
+        faces = mesh.grow_faces(&faces);
+        let surface = LimitSurface::around(mesh, &faces);
+        Self { surface, footprint, size: mesh.size(), sampling, active_rings }
     }
 
     pub(super) fn size(&self) -> f64 {
@@ -46,7 +46,7 @@ impl Reference {
         changed: &[FaceId],
         job: &Job,
     ) -> Result<Difference, Cancelled> {
-        let affected = affected_faces(mesh, changed);
+        let affected = affected_faces(mesh, changed, self.active_rings);
         // Feet of the frozen surface's samples may lie one face further.
         let now = LimitSurface::around(mesh, &mesh.grow_faces(&affected));
         let in_footprint = |f: FaceId| self.footprint.binary_search(&mesh.original_face(f)).is_ok();

@@ -80,7 +80,9 @@ impl Run<'_> {
         let measured = self.options.samples > 0;
         let sampling = Sampling { per_side: self.options.samples, threads: self.options.threads };
         let deepest = self.deepest();
-        let reference = measured.then(|| deviation::Reference::freeze(mesh, &crossed, footprint, sampling));
+        let active_rings = self.options.method.active_rings();
+        let reference =
+            measured.then(|| deviation::Reference::freeze(mesh, &crossed, footprint, sampling, active_rings));
         let walls = measured.then(|| deviation::Walls::around(mesh, &crossed, deepest));
         let mut target = Target::freeze(mesh, &region, job)?;
         self.clock.lap("freeze");
@@ -256,6 +258,10 @@ impl Run<'_> {
         for (i, (mark, values)) in self.marks.iter().zip(aims).enumerate() {
             let kind = &self.features[self.feature_of[i]].kind;
             place_lines(mesh, mark, i, self.cuts(mesh, i, values)?, kind);
+        }
+        let end = mesh.intern("end");
+        for &(h, depth) in &self.ends {
+            mesh.set_attribute(Node::HalfEdge(h), end, Some(Value::Number(depth)));
         }
         mark::place(mesh, &self.parity);
         for (i, mark) in (self.marks.len()..).zip(&self.parity) {

@@ -19,6 +19,7 @@ mod prepare;
 mod profile;
 mod profile_file;
 mod report;
+mod report_text;
 mod request;
 mod section;
 mod settings;
@@ -49,11 +50,13 @@ pub fn linear_rules() -> Result<RuleSet, RulesError> {
     }
     let included = |file: &str| {
         let text = match file {
+            "room.rules" => file!("room.rules"),
             "split.rules" => file!("split.rules"),
             "sides.rules" => file!("sides.rules"),
             "crossings.rules" => file!("crossings.rules"),
             "bands.rules" => file!("bands.rules"),
             "parity.rules" => file!("parity.rules"),
+            "paper_tees.rules" => file!("paper_tees.rules"),
             "tees.rules" => file!("tees.rules"),
             "ends.rules" => file!("ends.rules"),
             "meets.rules" => file!("meets.rules"),

@@ -82,26 +82,22 @@ pub unsafe extern "C" fn welt_surface_evaluate(
         let order = order(derivatives)?;
         // SAFETY: the header asks for a living surface, initialised options or NULL, and arrays and a buffer of these sizes.
         let (surface, options, points, buffer) = unsafe {
+            let surface = &arguments::handle(surface, "surface")?.target.surface;
             let options = options::complete(options)?;
-            let corners =
-                if corners.is_null() { None } else { Some(arguments::array(corners, count, "corners")?) };
-            let points = Points {
-                faces: arguments::array(faces, count, "faces")?,
-                corners,
-                parameters: Rows::new(parameters, count, 2, options.input_stride, "parameters")?,
-            };
+            let points = Points::new(faces, corners, parameters, count, options.input_stride)?;
             let rows = [count, order.values(), options.output_stride];
-            let buffer = RowBuffer::new(values, capacity, rows, "values")?;
-            (&arguments::handle(surface, "surface")?.target.surface, options, points, buffer)
+            (surface, options, points, RowBuffer::new(values, capacity, rows, "values")?)
         };
-        points.check(surface, count)?;
-        // Before the first row, since rows are written as they come.
-        fault::point("evaluate");
+        points.check(|face, corner| missing_patch(surface, face, corner))?;
         // Fewer points are not worth a thread.
         const LEAST_PER_THREAD: usize = 1024;
         in_ranges(count, options.threads as usize, LEAST_PER_THREAD, |range| {
-            // SAFETY: ranges have no row in common.
-            surface.evaluate_all(range, order, |i| points.get(i), |i, row| unsafe { buffer.write(i, row) });
+            let write = |i, row: &[f64]| {
+                fault::point("evaluate");
+                // SAFETY: ranges have no row in common.
+                unsafe { buffer.write(i, row) };
+            };
+            surface.evaluate_all(range, order, |i| points.get(i), write);
         });
         Ok(())
     };
@@ -109,35 +105,63 @@ pub unsafe extern "C" fn welt_surface_evaluate(
     unsafe { boundary(error, body) }
 }
 
-/// Where to evaluate, as the caller has it.
-struct Points<'a> {
+/// Points of a surface, as the caller names them.
+pub(super) struct Points<'a> {
     faces: &'a [u32],
     corners: Option<&'a [u32]>,
     parameters: Rows<'a>,
 }
 
-impl Points<'_> {
-    /// `i` is below the count.
+impl<'a> Points<'a> {
+    /// # Safety
+    /// Each pointer is NULL or the start of an array of `count` elements that nobody changes during the call.
+    pub(super) unsafe fn new(
+        faces: *const u32,
+        corners: *const u32,
+        parameters: *const f64,
+        count: usize,
+        stride: usize,
+    ) -> Result<Self, Failure> {
+        // SAFETY: as for this function.
+        unsafe {
+            let corners =
+                if corners.is_null() { None } else { Some(arguments::array(corners, count, "corners")?) };
+            Ok(Self {
+                faces: arguments::array(faces, count, "faces")?,
+                corners,
+                parameters: Rows::new(parameters, count, 2, stride, "parameters")?,
+            })
+        }
+    }
+
+    /// Point `i`, which is below the count.
     #[inline(always)]
-    fn get(&self, i: usize) -> Parameter {
+    pub(super) fn get(&self, i: usize) -> Parameter {
         let uv = self.parameters.row(i);
         let corner = self.corners.map_or(0, |corners| corners[i]);
         Parameter { face: FaceId(self.faces[i]), corner, u: uv[0], v: uv[1] }
     }
 
-    /// Results are written only where nothing is wrong with any point.
-    fn check(&self, surface: &LimitSurface, count: usize) -> Result<(), Failure> {
-        for i in 0..count {
+    /// Looks at all points before the first result is written. `missing` says what is wrong with a face and its patch.
+    pub(super) fn check(&self, missing: impl Fn(FaceId, u32) -> Option<String>) -> Result<(), Failure> {
+        for i in 0..self.faces.len() {
             let Parameter { face, corner, u, v } = self.get(i);
             if u.is_nan() || v.is_nan() {
                 return Err(Failure::argument(format!("a parameter of point {i} is NaN")));
             }
-            if corner > 0 && (1..=corner as usize).contains(&surface.patch_count(face)) {
-                return Err(Failure::argument(format!("face {} has no patch {corner}", face.0)));
+            if let Some(what) = missing(face, corner) {
+                return Err(Failure::argument(what));
             }
         }
         Ok(())
     }
+}
+
+/// What is wrong where a face has patches, but not this one.
+#[inline(always)]
+pub(super) fn missing_patch(surface: &LimitSurface, face: FaceId, corner: u32) -> Option<String> {
+    let missing = corner > 0 && (1..=corner as usize).contains(&surface.patch_count(face));
+    missing.then(|| format!("face {} has no patch {corner}", face.0))
 }
 
 /// What `derivatives` asks for.

@@ -5,7 +5,7 @@ use super::boundary::boundary;
 use super::error::WeltError;
 use super::failure::{Failure, Place};
 use super::job::WeltJob;
-use super::mesh::{WeltMesh, mesh_of};
+use super::mesh::WeltMesh;
 use super::options::{self, Options};
 use super::report::{WeltReport, hand_over};
 use super::rules::WeltRules;
@@ -317,8 +317,8 @@ pub unsafe extern "C" fn welt_mesh_deviation(
         // SAFETY: the header asks for living meshes, a job or NULL, and room for three doubles.
         let (first, second, job, values) = unsafe {
             (
-                mesh_of(first)?,
-                mesh_of(second)?,
+                arguments::handle(first, "first")?.read()?,
+                arguments::handle(second, "second")?.read()?,
                 arguments::optional(job, "job")?,
                 Buffer::new(values, 3, 3, "values")?,
             )

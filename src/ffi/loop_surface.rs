@@ -1,16 +1,17 @@
 //! Loop subdivision of triangle meshes.
 
-use super::arguments::{self, Buffer, Output, RowBuffer, Rows};
+use super::arguments::{Buffer, Output, RowBuffer};
 use super::boundary::boundary;
 use super::error::WeltError;
-use super::evaluate::{WeltBatchOptions, order};
+use super::evaluate::{Points, WeltBatchOptions, order};
 use super::failure::{Failure, Location, Place};
 use super::mesh::{WeltMesh, mesh_of};
 use super::options;
 use super::status::WELT_ERROR_MESH;
 use crate::fault;
-use crate::mesh::{FaceId, Mesh};
+use crate::mesh::Mesh;
 use crate::subdivision::{LimitPoint, LoopSurface, NotTriangles, SurfacePoint};
+use crate::surface::Parameter;
 use crate::threads::in_ranges;
 use glam::DVec3;
 
@@ -120,32 +121,24 @@ pub unsafe extern "C" fn welt_mesh_loop_evaluate(
     let body = || {
         let width = order(derivatives)?.values();
         // SAFETY: the header asks for a living mesh, initialised options or NULL, and arrays and a buffer of these sizes.
-        let (mesh, options, faces, parameters, buffer) = unsafe {
+        let (mesh, options, points, buffer) = unsafe {
+            let mesh = mesh_of(mesh)?;
             let options = options::complete(options)?;
-            (
-                mesh_of(mesh)?,
-                options,
-                arguments::array(faces, count, "faces")?,
-                Rows::new(parameters, count, 2, options.input_stride, "parameters")?,
-                RowBuffer::new(values, capacity, [count, width, options.output_stride], "values")?,
-            )
+            let points = Points::new(faces, std::ptr::null(), parameters, count, options.input_stride)?;
+            let rows = [count, width, options.output_stride];
+            (mesh, options, points, RowBuffer::new(values, capacity, rows, "values")?)
         };
         let surface = LoopSurface::new(mesh)?;
-        for (i, (&face, uv)) in faces.iter().zip(parameters.range(0..count)).enumerate() {
-            if FaceId(face).is_boundary() || !mesh.has_face(FaceId(face)) {
-                return Err(Failure::argument(format!("face {face} does not exist")));
-            }
-            if uv.iter().any(|parameter| parameter.is_nan()) {
-                return Err(Failure::argument(format!("a parameter of point {i} is NaN")));
-            }
-        }
-        fault::point("evaluate");
+        points.check(|face, _| {
+            let missing = face.is_boundary() || !mesh.has_face(face);
+            missing.then(|| format!("face {} does not exist", face.0))
+        })?;
         in_ranges(count, options.threads as usize, 64, |range| {
             for i in range {
-                let uv = parameters.row(i);
-                let point = surface.evaluate(FaceId(faces[i]), uv[0], uv[1]);
+                fault::point("evaluate");
+                let Parameter { face, u, v, .. } = points.get(i);
                 // SAFETY: ranges have no row in common.
-                unsafe { buffer.write(i, &numbers(point)[..width]) };
+                unsafe { buffer.write(i, &numbers(surface.evaluate(face, u, v))[..width]) };
             }
         });
         Ok(())

@@ -49,49 +49,66 @@ fn nothing() -> WeltSurfacePoint {
 
 impl From<Foot> for WeltSurfacePoint {
     fn from(foot: Foot) -> Self {
+        let Foot { face, corner, u, v, position, normal, distance, .. } = foot;
         Self {
-            face: foot.face.0,
-            corner: foot.corner as u32,
-            u: foot.u,
-            v: foot.v,
-            position: foot.position.into(),
-            normal: foot.normal.into(),
-            distance: foot.distance,
+            face: face.0,
+            corner: corner as u32,
+            u,
+            v,
+            position: position.into(),
+            normal: normal.into(),
+            distance,
         }
     }
 }
 
 impl From<Hit> for WeltSurfacePoint {
     fn from(hit: Hit) -> Self {
-        Self {
-            face: hit.face.0,
-            corner: hit.corner as u32,
-            u: hit.u,
-            v: hit.v,
-            position: hit.position.into(),
-            normal: hit.normal.into(),
-            distance: hit.s,
-        }
+        let Hit { face, corner, u, v, position, normal, s, .. } = hit;
+        Foot { face, corner, u, v, position, normal, distance: s }.into()
     }
 }
 
-/// The results of `query` for each row of the input, in order.
-fn each_row<T: Send>(
-    surface: &LimitSurface,
-    rows: &Rows<'_>,
+/// What is asked of a surface: the rows of one array.
+struct Batch<'a> {
+    surface: &'a LimitSurface,
+    rows: Rows<'a>,
     count: usize,
-    threads: u32,
-    query: impl Fn(&LimitSurface, usize, &[f64]) -> T + Sync,
-) -> Vec<T> {
-    let parts = in_ranges(count, threads as usize, 16, |range| {
-        let rows = rows.range(range.clone()).zip(range);
-        let answer = |(row, i)| {
-            fault::point("query");
-            query(surface, i, row)
-        };
-        rows.map(answer).collect::<Vec<T>>()
-    });
-    parts.into_iter().flatten().collect()
+    options: WeltBatchOptions,
+}
+
+impl<'a> Batch<'a> {
+    /// # Safety
+    /// `surface` is NULL or a living one, `options` NULL or initialised, `input` NULL or `count` rows of `width` doubles that
+    /// nobody changes during the call.
+    unsafe fn new(
+        surface: *const WeltSurface,
+        options: *const WeltBatchOptions,
+        input: *const f64,
+        [count, width]: [usize; 2],
+        name: &str,
+    ) -> Result<Self, Failure> {
+        // SAFETY: as for this function.
+        unsafe {
+            let surface = &arguments::handle(surface, "surface")?.target.surface;
+            let options = options::complete(options)?;
+            let rows = Rows::new(input, count, width, options.input_stride, name)?;
+            Ok(Self { surface, rows, count, options })
+        }
+    }
+
+    /// The answers for all rows, in order. Nothing is written before they are complete.
+    fn answers<T: Send>(&self, query: impl Fn(&LimitSurface, usize, &[f64]) -> T + Sync) -> Vec<T> {
+        let parts = in_ranges(self.count, self.options.threads as usize, 16, |range| {
+            let rows = self.rows.range(range.clone()).zip(range);
+            let answer = |(row, i)| {
+                fault::point("query");
+                query(self.surface, i, row)
+            };
+            rows.map(answer).collect::<Vec<T>>()
+        });
+        parts.into_iter().flatten().collect()
+    }
 }
 
 /// Finds the point of the surface that is closest to each of many points, exactly: also beside extraordinary vertices,
@@ -128,19 +145,15 @@ pub unsafe extern "C" fn welt_surface_closest(
             return Err(Failure::argument("radius is NaN"));
         }
         // SAFETY: the header asks for a living surface, initialised options or NULL, and arrays and a buffer of these sizes.
-        let (surface, options, points, starts, buffer) = unsafe {
-            let options = options::complete(options)?;
+        let (batch, starts, buffer) = unsafe {
             (
-                arguments::handle(surface, "surface")?,
-                options,
-                Rows::new(points, count, 3, options.input_stride, "points")?,
+                Batch::new(surface, options, points, [count, 3], "points")?,
                 if starts.is_null() { &[] } else { arguments::array(starts, count, "starts")? },
                 Buffer::new(found, capacity, count, "found")?,
             )
         };
         let wanted = ClosestOptions { radius, facing: None };
-        let surface = &surface.target.surface;
-        let results = each_row(surface, &points, count, options.threads, |surface, i, row| {
+        let results = batch.answers(|surface, i, row| {
             let point = DVec3::from_slice(row);
             let foot = match starts.get(i) {
                 Some(&WeltSurfacePoint { face, corner, u, v, .. }) => {
@@ -180,22 +193,16 @@ pub unsafe extern "C" fn welt_surface_signed_distances(
 ) -> i32 {
     let body = || {
         // SAFETY: the header asks for a living surface, initialised options or NULL, and arrays and a buffer of these sizes.
-        let (surface, options, points, buffer) = unsafe {
-            let options = options::complete(options)?;
-            (
-                arguments::handle(surface, "surface")?,
-                options,
-                Rows::new(points, count, 3, options.input_stride, "points")?,
-                RowBuffer::new(distances, capacity, [count, 1, options.output_stride], "distances")?,
-            )
+        let (batch, buffer) = unsafe {
+            let batch = Batch::new(surface, options, points, [count, 3], "points")?;
+            let rows = [count, 1, batch.options.output_stride];
+            (batch, RowBuffer::new(distances, capacity, rows, "distances")?)
         };
-        let surface = &surface.target.surface;
-        if !surface.is_closed() {
+        if !batch.surface.is_closed() {
             return Err(Failure::argument("the surface has a border, so that it has no inside"));
         }
-        let results = each_row(surface, &points, count, options.threads, |surface, _, row| {
-            surface.solid_distance(DVec3::from_slice(row)).unwrap_or(f64::NAN)
-        });
+        let results = batch
+            .answers(|surface, _, row| surface.solid_distance(DVec3::from_slice(row)).unwrap_or(f64::NAN));
         for (i, distance) in results.iter().enumerate() {
             // SAFETY: there is one thread again.
             unsafe { buffer.write(i, std::slice::from_ref(distance)) };
@@ -236,17 +243,13 @@ pub unsafe extern "C" fn welt_surface_first_hits(
     let body = || {
         check_range(first, last)?;
         // SAFETY: the header asks for a living surface, initialised options or NULL, and arrays and a buffer of these sizes.
-        let (surface, options, lines, buffer) = unsafe {
-            let options = options::complete(options)?;
+        let (batch, buffer) = unsafe {
             (
-                arguments::handle(surface, "surface")?,
-                options,
-                Rows::new(lines, count, 6, options.input_stride, "lines")?,
+                Batch::new(surface, options, lines, [count, 6], "lines")?,
                 Buffer::new(found, capacity, count, "found")?,
             )
         };
-        let surface = &surface.target.surface;
-        let results = each_row(surface, &lines, count, options.threads, |surface, _, row| {
+        let results = batch.answers(|surface, _, row| {
             let [origin, direction] = line(row);
             surface.first_line_hit(origin, direction, first, last).map_or_else(nothing, Into::into)
         });
@@ -287,18 +290,14 @@ pub unsafe extern "C" fn welt_surface_all_hits(
         check_range(first, last)?;
         let rooms = count.checked_add(1).ok_or_else(|| Failure::argument("count is too large"))?;
         // SAFETY: the header asks for a living surface, initialised options or NULL, and arrays and buffers of these sizes.
-        let (surface, options, lines, starts, needed) = unsafe {
-            let options = options::complete(options)?;
+        let (batch, starts, needed) = unsafe {
             (
-                arguments::handle(surface, "surface")?,
-                options,
-                Rows::new(lines, count, 6, options.input_stride, "lines")?,
+                Batch::new(surface, options, lines, [count, 6], "lines")?,
                 Buffer::new(starts, rooms, rooms, "starts")?,
                 Output::optional(needed, "needed")?,
             )
         };
-        let surface = &surface.target.surface;
-        let hits = each_row(surface, &lines, count, options.threads, |surface, _, row| {
+        let hits = batch.answers(|surface, _, row| {
             let [origin, direction] = line(row);
             surface.line_hits_between(origin, direction, first, last)
         });

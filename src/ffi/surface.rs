@@ -1,8 +1,9 @@
 //! `welt_surface`.
 
-use super::arguments::{self, Buffer, Output};
+use super::arguments::{self, Output, RowBuffer};
 use super::boundary::boundary;
 use super::error::WeltError;
+use super::evaluate::{Points, missing_patch};
 use super::failure::Failure;
 use super::feature::method;
 use super::job::WeltJob;
@@ -13,6 +14,7 @@ use crate::job::Job;
 use crate::mesh::{FaceId, Mesh, VertexId};
 use crate::optimise::{self, Target};
 use crate::subdivision::SurfacePoint;
+use crate::surface::Parameter;
 
 /// A limit surface, frozen: it stays as it is when its mesh changes. Never changes.
 pub struct WeltSurface {
@@ -99,61 +101,23 @@ pub unsafe extern "C" fn welt_surface_curvature(
     error: *mut *mut WeltError,
 ) -> i32 {
     let body = || {
-        // SAFETY: the header asks for a living surface, arrays of this count and a buffer of this capacity.
-        unsafe { evaluate_each(surface, faces, corners, parameters, count, values, capacity, curvature) }
+        // SAFETY: the header asks for a living surface, and arrays and a buffer of these sizes.
+        let (surface, points, buffer) = unsafe {
+            let surface = &arguments::handle(surface, "surface")?.target.surface;
+            let points = Points::new(faces, corners, parameters, count, 0)?;
+            (surface, points, RowBuffer::new(values, capacity, [count, 10, 0], "values")?)
+        };
+        points.check(|face, corner| missing_patch(surface, face, corner))?;
+        for i in 0..count {
+            fault::point("evaluate");
+            let Parameter { face, corner, u, v } = points.get(i);
+            // SAFETY: there is one thread.
+            unsafe { buffer.write(i, &curvature(surface.evaluate(face, corner as usize, u, v))) };
+        }
+        Ok(())
     };
     // SAFETY: the header asks for NULL or a place for an error.
     unsafe { boundary(error, body) }
-}
-
-/// Writes what `value` makes of the points at parameters of faces, N doubles each.
-///
-/// # Safety
-/// As for [`welt_surface_curvature`], with a buffer of `capacity` doubles.
-#[allow(clippy::too_many_arguments)]
-unsafe fn evaluate_each<const N: usize>(
-    surface: *const WeltSurface,
-    faces: *const u32,
-    corners: *const u32,
-    parameters: *const f64,
-    count: usize,
-    values: *mut f64,
-    capacity: usize,
-    value: impl Fn(Option<SurfacePoint>) -> [f64; N],
-) -> Result<(), Failure> {
-    let too_large = || Failure::argument(format!("count is {count}, which is too large"));
-    let needed = count.checked_mul(N).ok_or_else(too_large)?;
-    // SAFETY: the caller vouches for the surface, the arrays and the buffer.
-    let (surface, faces, parameters, buffer) = unsafe {
-        (
-            arguments::handle(surface, "surface")?,
-            arguments::array(faces, count, "faces")?,
-            arguments::array(parameters, 2 * count, "parameters")?,
-            Buffer::new(values, capacity, needed, "values")?,
-        )
-    };
-    let corners = if corners.is_null() {
-        &[]
-    } else {
-        // SAFETY: not NULL; the caller vouches for an array of this count.
-        unsafe { arguments::array(corners, count, "corners") }?
-    };
-    let surface = &surface.target.surface;
-    let mut found = Vec::with_capacity(count);
-    for (i, (&face, uv)) in faces.iter().zip(parameters.chunks_exact(2)).enumerate() {
-        let corner = corners.get(i).copied().unwrap_or(0) as usize;
-        let patches = surface.patch_count(FaceId(face));
-        if patches > 0 && corner >= patches {
-            return Err(Failure::argument(format!("face {face} has no patch {corner}")));
-        }
-        if uv.iter().any(|parameter| parameter.is_nan()) {
-            return Err(Failure::argument(format!("a parameter of point {i} is NaN")));
-        }
-        fault::point("evaluate");
-        found.push(value(surface.evaluate(FaceId(face), corner, uv[0], uv[1])));
-    }
-    buffer.fill(found.into_iter().flatten());
-    Ok(())
 }
 
 /// Principal curvatures and directions, mean and Gaussian curvature; NaN where they are not defined.

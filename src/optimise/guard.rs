@@ -1,16 +1,22 @@
 //! No fit may make the surface worse: where it does, vertices are held and the fit is done again.
 //!
 //! Beside sharp folds, where normals turn from vertex to vertex and edges are of very different lengths, the limit points
-//! may lie on the surface and the surface between them far from it, further than without a fit.
+//! may lie on the surface and the surface between them far from it, further than without a fit. What is held follows
+//! from all faces at once, so it does not depend on their order.
 
 use super::Stop;
 use super::samples::Samples;
 use crate::job::{Cancelled, Job};
 use crate::mesh::{Mesh, VertexId};
 use glam::DVec3;
+use rustc_hash::FxHashMap;
 
-/// Times that a fit is repeated with vertices held; then the better of the fit and the start is kept.
-const REPEATS: u32 = 3;
+/// Times that a fit is repeated with vertices held; then each part of the surface is left as it was where the fit makes it
+/// worse in sum.
+const REPEATS: u32 = 4;
+
+/// How often each vertex was at a face that became worse.
+pub(super) type Strikes = FxHashMap<VertexId, u32>;
 
 /// What a fit came to.
 pub(super) struct Outcome {
@@ -22,33 +28,82 @@ pub(super) struct Outcome {
     pub(super) held: usize,
 }
 
-/// Runs `fit` on `free` vertices, and again on fewer of them as long as some faces are worse than at the start. It gets
-/// samples that are evaluated at the positions of the mesh, and leaves them so.
+/// Runs `fit`, which moves vertices of `free`, and again with those held that strikes name as long as some faces are
+/// worse than at the start. It gets samples that are evaluated at the positions of the mesh, and leaves them so.
 pub(super) fn guarded<'a>(
     mesh: &mut Mesh,
-    mut free: Vec<VertexId>,
+    free: &[VertexId],
     samples: &mut Samples<'a>,
     job: &Job,
-    mut fit: impl FnMut(&mut Mesh, &[VertexId], &mut Samples<'a>) -> Result<Outcome, Cancelled>,
+    mut fit: impl FnMut(&mut Mesh, &Strikes, &mut Samples<'a>) -> Result<Outcome, Cancelled>,
 ) -> Result<Outcome, Cancelled> {
-    let start: Vec<(VertexId, DVec3)> = free.iter().map(|&v| (v, mesh.position(v))).collect();
+    let start: Vec<DVec3> = free.iter().map(|&v| mesh.position(v)).collect();
     samples.evaluate(mesh, job)?;
-    let (errors, error) = (samples.errors(), samples.error());
-    for repeat in 0..=REPEATS {
-        let outcome = fit(mesh, &free, samples)?;
-        let worse = samples.worse_than(mesh, &errors);
-        let is_last = worse.is_empty() || repeat == REPEATS;
-        if is_last && samples.is_as_near(error) {
-            return Ok(Outcome { held: start.len() - free.len(), ..outcome });
+    let before = samples.snapshot();
+    let mut strikes = Strikes::default();
+    let mut repeat = 0;
+    let mut outcome = loop {
+        let outcome = fit(mesh, &strikes, samples)?;
+        let worse = samples.worse_faces(&before);
+        if worse.is_empty() || repeat == REPEATS {
+            break outcome;
         }
-        for &(v, position) in &start {
-            mesh.set_position(v, position);
+        let mut struck: Vec<VertexId> =
+            worse.iter().flat_map(|&k| mesh.face_vertices(samples.faces[k].face)).collect();
+        struck.sort_unstable();
+        struck.dedup();
+        struck.into_iter().for_each(|v| *strikes.entry(v).or_default() += 1);
+        free.iter().zip(&start).for_each(|(&v, &position)| mesh.set_position(v, position));
+        samples.restore(&before, 0..before.errors.len());
+        repeat += 1;
+    };
+    // Parts of the surface that no free vertex joins are judged one by one.
+    for part in parts(free, samples) {
+        if samples.is_worse(&before, &part) {
+            for &k in &part {
+                for v in samples.faces[k].control.iter() {
+                    if let Ok(number) = free.binary_search(v) {
+                        mesh.set_position(*v, start[number]);
+                        *strikes.entry(*v).or_default() += 1;
+                    }
+                }
+            }
+            samples.restore(&before, part.into_iter());
         }
-        samples.evaluate(mesh, job)?;
-        if is_last {
-            break;
-        }
-        free.retain(|v| !worse.contains(v));
     }
-    Ok(Outcome { steps: 0, stop: Stop::Nothing, residual: samples.residual(), held: start.len() })
+    outcome.held = free.iter().filter(|v| strikes.contains_key(v)).count();
+    outcome.residual = outcome.residual.max(samples.residual());
+    Ok(outcome)
+}
+
+/// The sampled faces, by their numbers, in parts that share no vertex of `free`, which is ascending.
+fn parts(free: &[VertexId], samples: &Samples) -> Vec<Vec<usize>> {
+    let mut part_of: Vec<usize> = (0..free.len()).collect();
+    fn root(part_of: &mut [usize], mut k: usize) -> usize {
+        while part_of[k] != k {
+            part_of[k] = part_of[part_of[k]];
+            k = part_of[k];
+        }
+        k
+    }
+    let of_face = |k: usize| samples.faces[k].control.iter().filter_map(|v| free.binary_search(v).ok());
+    for face in 0..samples.faces.len() {
+        let mut numbers = of_face(face);
+        if let Some(first) = numbers.next() {
+            let first = root(&mut part_of, first);
+            for other in numbers {
+                let other = root(&mut part_of, other);
+                part_of[other] = first;
+            }
+        }
+    }
+    let mut parts: FxHashMap<usize, Vec<usize>> = FxHashMap::default();
+    for face in 0..samples.faces.len() {
+        if let Some(first) = of_face(face).next() {
+            parts.entry(root(&mut part_of, first)).or_default().push(face);
+        }
+    }
+    let mut parts: Vec<Vec<usize>> = parts.into_values().collect();
+    parts.sort_unstable();
+    parts
 }

@@ -211,10 +211,12 @@ pub fn fit(
     let outcome = match method {
         Method::None | Method::Loop | Method::Solve => {
             // Beyond the active vertices the frozen surface may end.
-            let mut samples = Samples::new(mesh, active, target, 1, SLOPE, false);
-            guard::guarded(mesh, inner, &mut samples, job, |mesh, free, samples| {
+            let mut samples = Samples::new(mesh, active, target, 1, SLOPE, false, false);
+            guard::guarded(mesh, &inner, &mut samples, job, |mesh, strikes, samples| {
                 missed.clear();
-                let outcome = lines::run(mesh, free, target, method, &mut missed, job)?;
+                let free: Vec<VertexId> =
+                    inner.iter().copied().filter(|v| !strikes.contains_key(v)).collect();
+                let outcome = lines::run(mesh, &free, target, method, &mut missed, job)?;
                 samples.evaluate(mesh, job)?;
                 Ok(outcome)
             })?
@@ -231,10 +233,10 @@ pub fn fit(
                 }
             }
             let slope = if slide { SLOPE_SLIDING } else { SLOPE };
-            let mut samples = Samples::new(mesh, &inner, target, ORDER, slope, true);
-            guard::guarded(mesh, inner, &mut samples, job, |mesh, free, samples| {
-                freedoms.retain(|(v, _)| free.binary_search(v).is_ok());
-                SurfaceFit::new(freedoms.clone(), samples, job).run(mesh)
+            // Along normals alone curvature can hardly be kept: nearly everything would be held.
+            let mut samples = Samples::new(mesh, &inner, target, ORDER, slope, true, slide);
+            guard::guarded(mesh, &inner, &mut samples, job, |mesh, strikes, samples| {
+                SurfaceFit::new(mesh, &freedoms, strikes, samples, job).run(mesh)
             })?
         }
     };

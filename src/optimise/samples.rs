@@ -7,13 +7,15 @@ use crate::subdivision::basis::{Control, Place, Table, Tables};
 use crate::subdivision::{SurfacePoint, has_limit};
 use crate::surface::{ClosestOptions, Facing, Foot, Hit};
 use glam::DVec3;
-use rustc_hash::FxHashSet;
 use smallvec::SmallVec;
 use std::rc::Rc;
 
 /// A face is worse than before only if its error is above this part of the mean error before: a small loss beside the
 /// feature is the price of the gain in it.
 const WORSE: f64 = 4.0;
+
+/// What is above by less than this factor is not worse, but rounding.
+const MARGIN: f64 = 1.0 + 1e-6;
 
 /// Faces with more corners, and at vertices with more edges, are not sampled: too many control vertices for the little
 /// that a sample says about each.
@@ -26,29 +28,51 @@ pub(super) fn is_large(mesh: &Mesh, face: FaceId) -> bool {
 
 /// A sampled face.
 pub(super) struct Sampled {
-    face: FaceId,
+    pub(super) face: FaceId,
     pub(super) control: Control,
     pub(super) table: Rc<Table>,
     /// Its first sample.
     first: usize,
+    /// Over the samples that count.
     error: Error,
+    area: f64,
 }
 
-/// Mean squares over an area: of the distance, and of distance and weighed slopes together.
+/// Integrals of squares over an area: of the distance, of distance and weighed slopes together, and of the change of
+/// mean curvature.
 #[derive(Clone, Copy, Default)]
 pub(super) struct Error {
     pub(super) distance: f64,
     pub(super) all: f64,
+    pub(super) bend: f64,
 }
 
 impl Error {
     fn map(self, change: impl Fn(f64) -> f64) -> Self {
-        Self { distance: change(self.distance), all: change(self.all) }
+        Self { distance: change(self.distance), all: change(self.all), bend: change(self.bend) }
     }
 
-    fn plus(self, other: Self) -> Self {
-        Self { distance: self.distance + other.distance, all: self.all + other.all }
+    pub(super) fn plus(self, other: Self) -> Self {
+        Self {
+            distance: self.distance + other.distance,
+            all: self.all + other.all,
+            bend: self.bend + other.bend,
+        }
     }
+
+    /// True when one of the three is above both of what `before` and `floor` say, by more than rounding.
+    pub(super) fn exceeds(self, before: Self, floor: Self) -> bool {
+        let more = |now: f64, before: f64, floor: f64| now > (MARGIN * before).max(floor);
+        more(self.distance, before.distance, floor.distance)
+            || more(self.all, before.all, floor.all)
+            || more(self.bend, before.bend, floor.bend)
+    }
+}
+
+/// The samples at some positions, to go back to.
+pub(super) struct Snapshot {
+    samples: Vec<Sample>,
+    pub(super) errors: Vec<Error>,
 }
 
 /// What is known of a sample at the present positions.
@@ -56,6 +80,8 @@ impl Error {
 pub(super) struct Sample {
     /// The foot; its `s` is the distance along its normal. `None` where there is none within reach.
     pub(super) foot: Option<Hit>,
+    /// It had a foot at first, and counts.
+    has_target: bool,
     pub(super) area: f64,
     /// Weight of the slopes over the lengths of the tangents.
     pub(super) factors: [f64; 2],
@@ -70,6 +96,8 @@ pub(super) struct Samples<'a> {
     target: &'a Target,
     /// Weight of the slopes as a length, in edges.
     slope: f64,
+    /// Changes of curvature count.
+    has_curvature: bool,
     pub(super) faces: Vec<Sampled>,
     samples: Vec<Sample>,
     is_evaluated: bool,
@@ -77,7 +105,7 @@ pub(super) struct Samples<'a> {
 
 impl<'a> Samples<'a> {
     /// At most `order` x `order` samples on each face whose surface moves with `vertices`, which are ascending; only on
-    /// faces between them, unless `beyond`.
+    /// faces between them, unless `beyond`. Changes of curvature count as errors if `has_curvature`.
     pub(super) fn new(
         mesh: &Mesh,
         vertices: &[VertexId],
@@ -85,6 +113,7 @@ impl<'a> Samples<'a> {
         order: usize,
         slope: f64,
         beyond: bool,
+        has_curvature: bool,
     ) -> Self {
         let is_between = |face| mesh.face_vertices(face).all(|v| vertices.binary_search(&v).is_ok());
         let at = vertices.iter().flat_map(|&v| mesh.outgoing(v)).map(|h| mesh.face(h));
@@ -100,12 +129,21 @@ impl<'a> Samples<'a> {
             let Some((control, table)) = tables.of_face(mesh, face) else { continue };
             let first = count;
             count += table.samples().len();
-            faces.push(Sampled { face, control, table, first, error: Error::default() });
+            faces.push(Sampled { face, control, table, first, error: Error::default(), area: 0.0 });
         }
         let zero = [DVec3::ZERO; 2];
-        let samples =
-            vec![Sample { foot: None, area: 0.0, factors: [0.0; 2], slopes: zero, turns: zero }; count];
-        Self { target, slope, faces, samples, is_evaluated: false }
+        let samples = vec![
+            Sample {
+                foot: None,
+                has_target: false,
+                area: 0.0,
+                factors: [0.0; 2],
+                slopes: zero,
+                turns: zero
+            };
+            count
+        ];
+        Self { target, slope, has_curvature, faces, samples, is_evaluated: false }
     }
 
     pub(super) fn of_face(&self, face: &Sampled) -> &[Sample] {
@@ -118,46 +156,60 @@ impl<'a> Samples<'a> {
         distances.fold(0.0, f64::max)
     }
 
-    fn area(&self, face: &Sampled) -> f64 {
-        self.of_face(face).iter().map(|sample| sample.area).sum()
-    }
-
-    /// The errors summed over the area.
+    /// The errors summed over all faces.
     pub(super) fn error(&self) -> Error {
-        let errors = self.faces.iter().map(|face| face.error.map(|error| error * self.area(face)));
-        errors.fold(Error::default(), Error::plus)
+        self.faces.iter().map(|face| face.error).fold(Error::default(), Error::plus)
     }
 
-    /// Mean squares below this are rounding.
-    fn rounding(&self) -> f64 {
-        (TOLERANCE * self.target.reach).powi(2)
+    /// What is not above this in the sum over some faces is rounding: in distance, along the slopes, in curvature.
+    fn rounding(&self, area: f64) -> Error {
+        let distance = (TOLERANCE * self.target.reach).powi(2) * area;
+        Error { distance, all: distance, bend: TOLERANCE.powi(2) * area / self.target.reach.powi(2) }
     }
 
-    /// True when the surface as a whole is as near as it was with the error `before`.
-    pub(super) fn is_as_near(&self, before: Error) -> bool {
-        let rounding = self.rounding() * self.faces.iter().map(|face| self.area(face)).sum::<f64>();
-        let now = self.error();
-        now.distance <= before.distance.max(rounding) && now.all <= before.all.max(rounding)
+    /// The samples as they are.
+    pub(super) fn snapshot(&self) -> Snapshot {
+        let errors = self.faces.iter().map(|face| face.error).collect();
+        Snapshot { samples: self.samples.clone(), errors }
     }
 
-    /// The errors of the faces.
-    pub(super) fn errors(&self) -> Vec<Error> {
-        self.faces.iter().map(|face| face.error).collect()
+    /// Goes back to the samples of `before`, whose positions the mesh has, on the faces with these numbers.
+    pub(super) fn restore(&mut self, before: &Snapshot, faces: impl Iterator<Item = usize>) {
+        for number in faces {
+            let face = &mut self.faces[number];
+            let range = face.first..face.first + face.table.samples().len();
+            face.error = before.errors[number];
+            self.samples[range.clone()].copy_from_slice(&before.samples[range]);
+        }
     }
 
-    /// Vertices of the faces that are further from the frozen surface than they were, by their errors before, and than
-    /// the faces were in the mean.
-    pub(super) fn worse_than(&self, mesh: &Mesh, before: &[Error]) -> FxHashSet<VertexId> {
-        let areas = || self.faces.iter().map(|face| self.area(face));
-        let total: f64 = areas().sum();
-        let sums = areas().zip(before).map(|(area, error)| error.map(|error| error * area / total));
-        let mean = sums.fold(Error::default(), Error::plus);
-        let rounding = self.rounding();
-        let worse = self.faces.iter().zip(before).filter(|(face, before)| {
-            face.error.distance > before.distance.max(WORSE * mean.distance).max(rounding)
-                || face.error.all > before.all.max(WORSE * mean.all).max(rounding)
-        });
-        worse.flat_map(|(face, _)| mesh.face_vertices(face.face)).collect()
+    /// True when the surface of the faces with these numbers is further from the frozen one than it was.
+    pub(super) fn is_worse(&self, before: &Snapshot, faces: &[usize]) -> bool {
+        let sum = |error: &dyn Fn(usize) -> Error| {
+            faces.iter().map(|&k| error(k)).fold(Error::default(), Error::plus)
+        };
+        let area = faces.iter().map(|&k| self.faces[k].area).sum();
+        sum(&|k| self.faces[k].error).exceeds(sum(&|k| before.errors[k]), self.rounding(area))
+    }
+
+    /// Numbers of the faces that are further from the frozen surface than they were, and than all faces were in the mean.
+    /// Curvature counts only where it is worse in sum.
+    pub(super) fn worse_faces(&self, before: &Snapshot) -> Vec<usize> {
+        let area: f64 = self.faces.iter().map(|face| face.area).sum();
+        let sum = before.errors.iter().copied().fold(Error::default(), Error::plus);
+        let mean = sum.map(|sum| WORSE * sum / area);
+        let bends = self.error().bend > MARGIN * sum.bend;
+        let is_worse = |k: &usize| {
+            let (face, rounding) = (&self.faces[*k], self.rounding(1.0));
+            let floor = |mean: f64, rounding: f64| mean.max(rounding) * face.area;
+            let floor = Error {
+                distance: floor(mean.distance, rounding.distance),
+                all: floor(mean.all, rounding.all),
+                bend: if bends { floor(mean.bend, rounding.bend) } else { f64::INFINITY },
+            };
+            face.error.exceeds(before.errors[*k], floor)
+        };
+        (0..self.faces.len()).filter(is_worse).collect()
     }
 
     /// Finds the feet of all samples at the present positions, and what they say.
@@ -168,12 +220,12 @@ impl<'a> Samples<'a> {
             }
             let face = &self.faces[index];
             let positions: SmallVec<[DVec3; 32]> = face.control.iter().map(|&v| mesh.position(v)).collect();
-            let (mut sum, mut total) = (Error::default(), 0.0);
+            let (mut error, mut area) = (Error::default(), 0.0);
             let corners = || positions.iter().take(mesh.arity(face.face));
             let diameter = corners().flat_map(|a| corners().map(move |b| a.distance(*b))).fold(0.0, f64::max);
             let mut last = None;
             for (k, (place, weights)) in face.table.samples().enumerate() {
-                let mut jet = [DVec3::ZERO; 3];
+                let mut jet = [DVec3::ZERO; 6];
                 for (&p, w) in positions.iter().zip(weights) {
                     jet.iter_mut().zip(w).for_each(|(sum, &w)| *sum += p * w);
                 }
@@ -187,30 +239,35 @@ impl<'a> Samples<'a> {
                         radius: diameter.min(self.target.reach),
                     },
                 };
-                let sample = self.sample(jet, place.share, search);
-                let [along_u, along_v] = sample.slopes;
-                let square = |foot: Hit| {
-                    let distance = foot.s.powi(2);
-                    let slopes = foot.normal.dot(along_u).powi(2) + foot.normal.dot(along_v).powi(2);
-                    Error { distance, all: distance + slopes }
-                };
-                let nowhere = self.target.reach.powi(2);
-                let here = sample.foot.map_or(Error { distance: nowhere, all: nowhere }, square);
-                sum = sum.plus(here.map(|error| error * sample.area));
-                total += sample.area;
+                let (mut sample, bend) = self.sample(jet, place.share, search);
+                sample.has_target = before.has_target || !self.is_evaluated && sample.foot.is_some();
+                if sample.has_target {
+                    let nowhere = self.target.reach.powi(2);
+                    let here = sample.foot.map_or(Error { distance: nowhere, all: nowhere, bend }, |foot| {
+                        let distance = foot.s.powi(2);
+                        let slopes: f64 =
+                            sample.slopes.iter().map(|slope| foot.normal.dot(*slope).powi(2)).sum();
+                        Error { distance, all: distance + slopes, bend }
+                    });
+                    error = error.plus(here.map(|square| square * sample.area));
+                    area += sample.area;
+                }
                 last = sample.foot.or(last);
                 self.samples[face.first + k] = sample;
             }
-            self.faces[index].error = if total > 0.0 { sum.map(|sum| sum / total) } else { Error::default() };
+            (self.faces[index].error, self.faces[index].area) = (error, area);
         }
         self.is_evaluated = true;
         Ok(())
     }
 
-    fn sample(&self, [point, du, dv]: [DVec3; 3], share: f64, search: Search) -> Sample {
+    /// A sample, and its square change of mean curvature.
+    fn sample(&self, jet: [DVec3; 6], share: f64, search: Search) -> (Sample, f64) {
+        let [point, du, dv, uu, uv, vv] = jet;
         let cross = du.cross(dv);
         let (foot, area) = (self.find_foot(search, point, cross), cross.length() * share);
         let (mut factors, mut slopes, mut turns) = ([0.0; 2], [DVec3::ZERO; 2], [DVec3::ZERO; 2]);
+        let mut bend = 0.0;
         let there =
             foot.and_then(|foot| self.target.surface.evaluate(foot.face, foot.corner, foot.u, foot.v));
         if let Some(there) = there {
@@ -223,7 +280,14 @@ impl<'a> Samples<'a> {
                 }
             }
         }
-        Sample { foot, area, factors, slopes, turns }
+        if let Some((there, second)) =
+            there.filter(|_| self.has_curvature).and_then(|there| Some((there, there.second?)))
+        {
+            let now = mean_curvature([du, dv], [uu, uv, vv]);
+            let was = mean_curvature([there.du, there.dv], [second.uu, second.uv, second.vv]);
+            bend = Some((now - was).powi(2)).filter(|bend| bend.is_finite()).unwrap_or_default();
+        }
+        (Sample { foot, has_target: false, area, factors, slopes, turns }, bend)
     }
 
     /// The foot of a sample with a normal on the side of `direction`.
@@ -265,6 +329,14 @@ struct Search {
 fn same_place(face: FaceId, place: Place) -> Hit {
     let Place { patch, u, v, .. } = place;
     Hit { face, corner: patch, u, v, s: 0.0, position: DVec3::ZERO, normal: DVec3::ZERO }
+}
+
+/// Mean curvature from first and second derivatives.
+fn mean_curvature([du, dv]: [DVec3; 2], second: [DVec3; 3]) -> f64 {
+    let cross = du.cross(dv);
+    let [l, m, n] = second.map(|vector| vector.dot(cross) / cross.length());
+    let (e, f, g) = (du.length_squared(), du.dot(dv), dv.length_squared());
+    0.5 * (e * n - 2.0 * f * m + g * l) / cross.length_squared()
 }
 
 /// The vector whose product with a shift of the foot is the change of n.tangent by the turning of the normal n: the

@@ -9,7 +9,7 @@
 use super::Stop;
 use super::assembly::Assembly;
 use super::freedom::Freedom;
-use super::guard::Outcome;
+use super::guard::{Outcome, Strikes};
 use super::samples::{Sampled, Samples};
 use crate::fault;
 use crate::job::{Cancelled, Job};
@@ -22,6 +22,13 @@ use smallvec::SmallVec;
 const SLIDE_COST: f64 = 1e-4;
 /// What a shift along the normal costs: nothing but definiteness where alternating modes have no limit.
 const NORMAL_COST: f64 = 1e-6;
+/// The costs of a vertex grow by this factor each time that a face at it became worse.
+const STRIKE: f64 = 300.0;
+/// A vertex at such a face slides by at most its shortest edge; its costs grow by this factor times the square of the
+/// excess until it does not want more.
+const RESTRAINT: f64 = 10.0;
+/// Solutions with grown costs at most per step.
+const RESTRAINTS: u32 = 4;
 /// Solutions at most; two are enough nearly everywhere.
 const STEPS: u32 = 4;
 /// The fit ends when a solution leaves more than this part of the error.
@@ -31,7 +38,11 @@ const GAIN: f64 = 0.98;
 pub(super) struct SurfaceFit<'a, 'b> {
     samples: &'b mut Samples<'a>,
     job: &'b Job,
-    freedoms: Vec<(VertexId, Freedom)>,
+    freedoms: &'b [(VertexId, Freedom)],
+    /// Per vertex the factor of its costs.
+    factors: Vec<f64>,
+    /// Per vertex its shortest edge.
+    shortest: Vec<f64>,
     /// Per sampled face the groups of unknowns of its control vertices that are free, in their order.
     groups: Vec<SmallVec<[u32; 32]>>,
     system: Assembly,
@@ -40,7 +51,9 @@ pub(super) struct SurfaceFit<'a, 'b> {
 impl<'a, 'b> SurfaceFit<'a, 'b> {
     /// The samples are evaluated at the positions of the mesh.
     pub(super) fn new(
-        freedoms: Vec<(VertexId, Freedom)>,
+        mesh: &Mesh,
+        freedoms: &'b [(VertexId, Freedom)],
+        strikes: &Strikes,
         samples: &'b mut Samples<'a>,
         job: &'b Job,
     ) -> Self {
@@ -50,7 +63,12 @@ impl<'a, 'b> SurfaceFit<'a, 'b> {
         let groups: Vec<SmallVec<[u32; 32]>> = samples.faces.iter().map(of_face).collect();
         let sizes: Vec<usize> = freedoms.iter().map(|(_, freedom)| freedom.len()).collect();
         let system = Assembly::new(&sizes, groups.iter().map(SmallVec::as_slice));
-        Self { samples, job, freedoms, groups, system }
+        let factor = |v: &VertexId| STRIKE.powi(strikes.get(v).map_or(0, |&count| count as i32));
+        let factors = freedoms.iter().map(|(v, _)| factor(v)).collect();
+        let length =
+            |v: VertexId| mesh.outgoing(v).map(|h| mesh.edge_length(h)).fold(f64::INFINITY, f64::min);
+        let shortest = freedoms.iter().map(|&(v, _)| length(v)).collect();
+        Self { samples, job, freedoms, factors, shortest, groups, system }
     }
 
     /// Moves the vertices and leaves the samples evaluated where they are then.
@@ -60,9 +78,9 @@ impl<'a, 'b> SurfaceFit<'a, 'b> {
         let mut error = self.samples.error().all;
         while steps < STEPS {
             self.job.step("fit", f64::from(steps) / f64::from(STEPS))?;
-            self.assemble(&shifts)?;
-            let Some(step) = self.system.solve() else { break };
-            for (group, &(v, ref freedom)) in (0..).zip(&self.freedoms) {
+            let share = self.assemble(&shifts)?;
+            let Some(step) = self.restrained(&shifts, share) else { break };
+            for (group, &(v, ref freedom)) in (0..).zip(self.freedoms) {
                 let along = freedom.iter().zip(&step[self.system.of_group(group)]);
                 let shift: DVec3 = along.map(|(&direction, &x)| direction * x).sum();
                 if shift.is_finite() {
@@ -83,8 +101,41 @@ impl<'a, 'b> SurfaceFit<'a, 'b> {
         Ok(Outcome { steps, stop, residual: self.samples.residual(), held: 0 })
     }
 
-    /// The normal equations of a step after `shifts`.
-    fn assemble(&mut self, shifts: &[f64]) -> Result<(), Cancelled> {
+    /// The step after `shifts` that lets no vertex of a face that became worse slide too far.
+    fn restrained(&mut self, shifts: &[f64], share: f64) -> Option<Vec<f64>> {
+        for repeat in 0.. {
+            let step = self.system.solve()?;
+            let mut is_restrained = false;
+            for (group, (_, freedom)) in self.freedoms.iter().enumerate() {
+                let unknowns = self.system.of_group(group as u32);
+                let slide =
+                    unknowns.clone().skip(1).map(|k| (shifts[k] + step[k]).powi(2)).sum::<f64>().sqrt();
+                let excess = slide / self.shortest[group];
+                if excess > 1.0 && self.factors[group] > 1.0 && repeat < RESTRAINTS {
+                    is_restrained = true;
+                    let more = self.factors[group] * (RESTRAINT * excess * excess - 1.0);
+                    self.factors[group] += more;
+                    self.add_costs(share * more, unknowns.take(freedom.len()), shifts);
+                }
+            }
+            if !is_restrained {
+                return Some(step);
+            }
+        }
+        None
+    }
+
+    /// Adds to the costs of a vertex, whose unknowns these are.
+    fn add_costs(&mut self, share: f64, unknowns: impl Iterator<Item = usize>, shifts: &[f64]) {
+        for (k, unknown) in unknowns.enumerate() {
+            let cost = share * if k == 0 { NORMAL_COST } else { SLIDE_COST };
+            self.system.add_diagonal(unknown, cost);
+            self.system.right[unknown] -= cost * shifts[unknown];
+        }
+    }
+
+    /// The normal equations of a step after `shifts`; returns what the samples weigh per vertex in the mean.
+    fn assemble(&mut self, shifts: &[f64]) -> Result<f64, Cancelled> {
         self.system.clear();
         let mut area = 0.0;
         let (mut columns, mut matrix, mut vector, mut row) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
@@ -136,13 +187,9 @@ impl<'a, 'b> SurfaceFit<'a, 'b> {
         }
         // As much cost per vertex as the samples weigh in the mean.
         let share = area / self.freedoms.len().max(1) as f64;
-        for (group, (_, freedom)) in (0..).zip(&self.freedoms) {
-            for (k, unknown) in self.system.of_group(group).enumerate().take(freedom.len()) {
-                let cost = share * if k == 0 { NORMAL_COST } else { SLIDE_COST };
-                self.system.add_diagonal(unknown, cost);
-                self.system.right[unknown] -= cost * shifts[unknown];
-            }
+        for group in 0..self.freedoms.len() {
+            self.add_costs(share * self.factors[group], self.system.of_group(group as u32), shifts);
         }
-        Ok(())
+        Ok(share)
     }
 }

@@ -12,8 +12,8 @@ use rustc_hash::FxHashMap;
 use smallvec::SmallVec;
 use std::rc::Rc;
 
-/// Weights of one control vertex at one sample: position, derivative by u, derivative by v.
-pub(crate) type Weights = [f64; 3];
+/// Weights of one control vertex at one sample: position, derivatives by u and v, by u twice, by u and v, by v twice.
+pub(crate) type Weights = [f64; 6];
 
 /// A sample of a face.
 #[derive(Clone, Copy, PartialEq, Debug)]
@@ -105,7 +105,7 @@ fn places(arity: usize, control: usize, order: usize) -> Vec<Place> {
 
 fn make(mesh: &Mesh, face: FaceId, control: &Control, order: usize) -> Option<Table> {
     let places = places(mesh.arity(face), control.len(), order);
-    let mut weights = vec![[0.0; 3]; places.len() * control.len()];
+    let mut weights = vec![[0.0; 6]; places.len() * control.len()];
     for first in (0..control.len()).step_by(3) {
         let unit = |v: VertexId| {
             let at = control.iter().position(|&c| c == v).map_or(usize::MAX, |i| i.wrapping_sub(first));
@@ -115,7 +115,7 @@ fn make(mesh: &Mesh, face: FaceId, control: &Control, order: usize) -> Option<Ta
         for (row, place) in weights.chunks_exact_mut(control.len()).zip(&places) {
             let jet = patches.get(place.patch)?.evaluate(place.u, place.v).jet;
             for (axis, entry) in row.iter_mut().skip(first).take(3).enumerate() {
-                *entry = [jet.position[axis], jet.du[axis], jet.dv[axis]];
+                *entry = [jet.position, jet.du, jet.dv, jet.duu, jet.duv, jet.dvv].map(|vector| vector[axis]);
             }
         }
     }
@@ -212,8 +212,9 @@ mod tests {
                 let (control, table) = tables.of_face(&mesh, face).expect("a face");
                 for (place, weights) in table.samples() {
                     let expected = evaluate(&mesh, face, place.patch, place.u, place.v).expect("a point");
-                    for (k, expected) in [expected.position, expected.du, expected.dv].into_iter().enumerate()
-                    {
+                    let second = expected.second.expect("inside of a face");
+                    let jet = [expected.position, expected.du, expected.dv, second.uu, second.uv, second.vv];
+                    for (k, expected) in jet.into_iter().enumerate() {
                         let found: DVec3 =
                             control.iter().zip(weights).map(|(&v, w)| mesh.position(v) * w[k]).sum();
                         assert!(

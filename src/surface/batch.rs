@@ -82,13 +82,18 @@ impl<const ORDER: usize, F: Four, A: Fn(usize) -> Parameter, S: FnMut(usize, &[f
     #[inline(always)]
     fn call(mut self) {
         let mut places = [None; AHEAD];
+        let mut found = Found { face: FaceId(0), corner: 0, entry: None };
         let mut first = self.points.start;
         while first < self.points.end {
             let count = AHEAD.min(self.points.end - first);
             let mut touched = 0.0;
             for (i, place) in places.iter_mut().take(count).enumerate() {
-                *place = self.surface.locate(&(self.at)(first + i));
-                touched += place.as_ref().map_or(0.0, |place| self.surface.touch(place));
+                let at = (self.at)(first + i);
+                if !found.is_at(&at) {
+                    found = self.surface.find(&at);
+                    touched += found.entry.map_or(0.0, |entry| self.surface.touch(entry));
+                }
+                *place = self.surface.locate(&at, &found);
             }
             black_box(touched);
             for (i, place) in places.iter().take(count).enumerate() {
@@ -104,21 +109,41 @@ impl<const ORDER: usize, F: Four, A: Fn(usize) -> Parameter, S: FnMut(usize, &[f
     }
 }
 
+/// The patch of the point before: sorted points stay in it.
+struct Found {
+    face: FaceId,
+    corner: u32,
+    entry: Option<Entry>,
+}
+
+impl Found {
+    #[inline(always)]
+    fn is_at(&self, at: &Parameter) -> bool {
+        self.entry.is_some() && self.face == at.face && self.corner == at.corner
+    }
+}
+
 impl LimitSurface {
     #[inline(always)]
-    fn locate(&self, at: &Parameter) -> Option<Located> {
+    fn find(&self, at: &Parameter) -> Found {
         let patches = self.faces.patches(at.face);
-        if at.corner >= patches.end - patches.start || at.u.is_nan() || at.v.is_nan() {
+        let exists = at.corner < patches.end - patches.start;
+        let entry = exists.then(|| self.patches.get((patches.start + at.corner) as usize).copied()).flatten();
+        Found { face: at.face, corner: at.corner, entry }
+    }
+
+    #[inline(always)]
+    fn locate(&self, at: &Parameter, found: &Found) -> Option<Located> {
+        if at.u.is_nan() || at.v.is_nan() {
             return None;
         }
-        let entry = *self.patches.get((patches.start + at.corner) as usize)?;
-        Some(Located::new(entry, &self.parts, at.u.clamp(0.0, 1.0), at.v.clamp(0.0, 1.0)))
+        Some(Located::new(found.entry?, &self.parts, at.u.clamp(0.0, 1.0), at.v.clamp(0.0, 1.0)))
     }
 
     /// Reads from each cache line of the bicubic, so that it is there soon.
     #[inline(always)]
-    fn touch(&self, place: &Located) -> f64 {
-        match place.entry {
+    fn touch(&self, entry: Entry) -> f64 {
+        match entry {
             Entry::Regular(piece) if self.bicubics.len() > LARGE => {
                 let [a, b, c, d] = &self.bicubics[piece as usize].points;
                 (a[0].x + a[3].x) + (b[2].x + c[1].x) + (c[3].z + d[3].x)

@@ -208,6 +208,42 @@ static void constants_that_do_not_exist(void) {
     welt_mesh_free(mesh);
 }
 
+/* What is wrong with the last of many points is found before the result of the first is written. */
+static void bad_last_points(void) {
+    const uint32_t faces[2] = {4, 4}, corners[2] = {0, 1}, triangle_faces[2] = {0, 1}, no_faces[2] = {0, UINT32_MAX};
+    const double nan = -sqrt(-1.0), middle[4] = {0.5, 0.5, 0.5, 0.5};
+    double parameters[4] = {0.5, 0.5, 0.5, 0.0}, values[36], before[36];
+    welt_mesh *mesh = sheet(), *flat = NULL;
+    welt_surface *surface = NULL;
+    int i;
+    parameters[3] = nan;
+    for (i = 0; i < 36; ++i) before[i] = values[i] = 7.0;
+    check(welt_surface_create(mesh, NULL, 0, NULL, &surface, NULL) == WELT_OK, "surface");
+    check(import(NULL, WELT_FORMAT_OBJ, &flat) == WELT_OK, "a triangle");
+    check(welt_surface_evaluate(surface, faces, NULL, parameters, 2, 2, NULL, values, 36, NULL) == WELT_ERROR_ARGUMENT,
+          "the last parameter is NaN");
+    check(welt_surface_evaluate(surface, faces, corners, middle, 2, 2, NULL, values, 36, NULL) == WELT_ERROR_ARGUMENT,
+          "the last patch is none");
+    check(welt_surface_evaluate(surface, faces, NULL, middle, 2, 2, NULL, values, 35, NULL) == WELT_ERROR_BUFFER,
+          "the last row has no room");
+    check(welt_surface_curvature(surface, faces, NULL, parameters, 2, values, 36, NULL) == WELT_ERROR_ARGUMENT,
+          "the last parameter of curvature is NaN");
+    check(welt_surface_curvature(surface, faces, corners, middle, 2, values, 36, NULL) == WELT_ERROR_ARGUMENT,
+          "the last patch of curvature is none");
+    check(welt_mesh_loop_evaluate(flat, no_faces, middle, 2, 2, NULL, values, 36, NULL) == WELT_ERROR_ARGUMENT &&
+              welt_mesh_loop_evaluate(flat, triangle_faces, middle, 2, 2, NULL, values, 36, NULL) == WELT_ERROR_ARGUMENT,
+          "the last triangle is none");
+    check(welt_mesh_loop_evaluate(flat, triangle_faces, parameters, 1, 2, NULL, values, 17, NULL) == WELT_ERROR_BUFFER,
+          "a row of a triangle has no room");
+    check(memcmp(values, before, sizeof values) == 0, "nothing is written");
+    check(welt_surface_evaluate(surface, faces, NULL, middle, 2, 2, NULL, values, 36, NULL) == WELT_OK &&
+              values[0] != 7.0 && values[18] != 7.0,
+          "good points are");
+    welt_surface_free(surface);
+    welt_mesh_free(flat);
+    welt_mesh_free(mesh);
+}
+
 /* Distances and parameters of lines that are NaN are refused; coordinates find nothing. */
 static void queries(const welt_surface *surface, int kind, double bad) {
     double line[6] = {1.5, 1.5, 1.0, 0.0, 0.0, -1.0};
@@ -285,6 +321,7 @@ int main(void) {
     sizes("welt_batch_options_init", initialise_batch, use_batch, sizeof(welt_batch_options), sizeof(welt_batch_options));
     sizes("welt_patch_options_init", initialise_patch, use_patch, 16, sizeof(welt_patch_options));
     constants_that_do_not_exist();
+    bad_last_points();
     numbers_that_are_none(0);
     numbers_that_are_none(1);
     numbers_that_are_none(2);

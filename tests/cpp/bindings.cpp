@@ -184,6 +184,13 @@ void queries() {
     that(hits.points.at(0).distance < hits.points.at(1).distance && hits.points[0].normal[2] > 0.5, "in order");
 }
 
+// Pole k along a side, counter-clockwise.
+double const* side_pole(welt_patch const& patch, std::uint32_t edge, std::uint32_t k) {
+    std::size_t const m = patch.pole_count_u, n = patch.pole_count_v;
+    std::size_t const places[] = {k, k * m + m - 1, n * m - 1 - k, (n - 1 - k) * m};
+    return patch.poles + 3 * places[edge];
+}
+
 // The limit of a flat sheet is the sheet: poles lie at the means of three successive knots.
 void patches() {
     welt::Mesh const mesh = make_sheet();
@@ -218,7 +225,14 @@ void patches() {
             if (beyond == WELT_NONE) continue;
             ++shared;
             welt_patch const other = four[beyond];
-            that(other.neighbours[four[number].neighbour_sides[edge]] == number, "neighbours know each other");
+            std::uint32_t const there = four[number].neighbour_sides[edge];
+            that(other.neighbours[there] == number, "neighbours know each other");
+            std::uint32_t const count = edge % 2 ? four[number].pole_count_v : four[number].pole_count_u;
+            that(count == (there % 2 ? other.pole_count_v : other.pole_count_u), "as many poles");
+            for (std::uint32_t k = 0; k < count; ++k) {
+                double const* const own = side_pole(four[number], edge, k);
+                that(std::equal(own, own + 3, side_pole(other, there, count - 1 - k)), "the same poles");
+            }
         }
     that(shared == 8, "each patch has two neighbours");
     failure(WELT_ERROR_ARGUMENT, [&] { four[4]; });

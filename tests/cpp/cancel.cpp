@@ -27,6 +27,14 @@ Polygons sheet() {
     return polygons;
 }
 
+Polygons tetrahedron() {
+    Polygons polygons;
+    polygons.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+    polygons.sizes.assign(4, 3);
+    polygons.vertices = {0, 2, 1, 0, 1, 3, 1, 2, 3, 2, 0, 3};
+    return polygons;
+}
+
 struct Content {
     std::vector<double> positions;
     std::vector<std::uint32_t> sizes, vertices;
@@ -99,22 +107,68 @@ void cancelled_at_any_moment() {
     welt_selection_free(selection);
 }
 
+// One handle of each kind that several threads may read.
+struct Handles {
+    Mesh mesh = make_mesh(sheet());
+    Mesh triangles = make_mesh(tetrahedron());
+    welt::Surface surface = mesh.freeze(), closed = triangles.freeze();
+    welt::Refinement refinement = mesh.refine(1);
+    welt::Selection marks = mesh.select("ring:20,21");
+};
+
+// What they say, in numbers.
+std::vector<double> answers(Handles const& of) {
+    std::vector<double> all;
+    auto const add = [&](auto const& values) { all.insert(all.end(), std::begin(values), std::end(values)); };
+    auto const add_vectors = [&](auto const& vectors) {
+        for (auto const& v : vectors) all.insert(all.end(), std::begin(v), std::end(v));
+    };
+    auto const add_points = [&](std::vector<welt_surface_point> const& points) {
+        for (welt_surface_point const& p : points) {
+            all.insert(all.end(), {double(p.face), p.u, p.v, p.distance});
+            add(p.position);
+        }
+    };
+    std::vector<std::uint32_t> const faces = {0, 41, 820, 1599};
+    std::vector<welt::Parameter> const places(4, {0.25, 0.75});
+    std::vector<std::uint32_t> const two_faces = {0, 3};
+    std::vector<welt::Parameter> const two_places(2, {0.25, 0.5});
+    std::vector<welt::Vector> const points = {{3, 4, 1}, {20, 30, -1}, {50, 50, 0}};
+    std::vector<welt::Line> const lines = {{{3.2, 4.1, 5}, {0, 0, -1}}, {{-1, 20.3, 0}, {1, 0, 0}}};
+    add_vectors(of.mesh.positions());
+    add(of.mesh.edges());
+    add_vectors(of.mesh.limit_positions());
+    add_vectors(of.mesh.limit_normals());
+    add_vectors(of.mesh.refine(2).positions(2));
+    all.push_back(double(of.mesh.select("ring:20,21").count()));
+    all.push_back(of.mesh.deviation(of.mesh, 1).root_mean_square);
+    add_vectors(of.triangles.loop_limit().positions);
+    add_vectors(of.triangles.refine_loop(2).positions());
+    for (welt::Jet const& jet : of.triangles.loop_evaluate(two_faces, two_places)) add(jet.position);
+    for (welt::Jet const& jet : of.surface.evaluate(faces, {}, places)) add(jet.position), add(jet.duv);
+    for (welt::Curvature const& at : of.surface.curvature(faces, {}, places)) all.push_back(at.gaussian);
+    add_points(of.surface.closest(points));
+    add_points(of.surface.first_hits(lines));
+    add_points(of.surface.all_hits(lines).points);
+    add(of.closed.signed_distances(points));
+    add_vectors(of.refinement.positions(1));
+    add(of.refinement.face_vertices(1));
+    add(of.marks.edges(of.mesh).places);
+    return all;
+}
+
+// New handles each time, so that what is made at the first query is made by several threads at once.
 void many_readers() {
-    Mesh const mesh = make_mesh(sheet());
-    std::atomic<int> wrong{0};
-    std::vector<std::thread> readers;
-    for (int i = 0; i < 4; ++i)
-        readers.emplace_back([&] {
-            welt_selection* selection = nullptr;
-            welt_surface* surface = nullptr;
-            bool fine = welt_selection_create(mesh.get(), "ring:20,21", SIZE_MAX, &selection, nullptr) == WELT_OK;
-            fine = welt_surface_create(mesh.get(), nullptr, 0, nullptr, &surface, nullptr) == WELT_OK && fine;
-            wrong += !fine || welt_selection_count(selection) != side + 1;
-            welt_surface_free(surface);
-            welt_selection_free(selection);
-        });
-    for (std::thread& reader : readers) reader.join();
-    check::that(wrong == 0, "four threads read one mesh");
+    std::vector<double> const alone = answers(Handles());
+    check::that(alone.size() > 10000, "handles say something");
+    std::atomic<int> different{0};
+    for (int round = 0; round < 2; ++round) {
+        Handles const shared;
+        std::vector<std::thread> readers;
+        for (int i = 0; i < 4; ++i) readers.emplace_back([&] { different += answers(shared) != alone; });
+        for (std::thread& reader : readers) reader.join();
+    }
+    check::that(different == 0, "four threads read the same handles");
 }
 
 void different_handles_at_once() {

@@ -16,7 +16,7 @@ struct Traits : OpenMesh::DefaultTraits {
 using OtherMesh = OpenMesh::TriMesh_ArrayKernelT<Traits>;
 
 constexpr double tolerance = 1e-12;  // of the size
-constexpr std::size_t depth = 2;
+constexpr std::size_t depth = 3;
 int closed = 0;
 
 // Nothing where the mesh has a boundary.

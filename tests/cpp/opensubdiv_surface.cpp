@@ -23,6 +23,8 @@ namespace Bfr = OpenSubdiv::Bfr;
 constexpr double tolerance = 1e-10;          // of the size
 constexpr int points_per_shape = 10000;
 constexpr int levels = 10;
+// Over all shapes, by scheme: parameters that were compared, and second derivatives.
+std::size_t all_compared[2] = {0, 0}, all_seconds[2] = {0, 0};
 
 struct Largest {
     double position = 0, first = 0, second = 0;
@@ -124,6 +126,11 @@ void compare_scheme(std::string const& name, Polygons const& polygons, Mesh cons
             ++seconds;
         }
     }
+    // Of the parameters where both have a surface and Bfr can be relied upon, Bfr approximates a few.
+    int const reliable = per_face * (face_count - nowhere) - broken;
+    check::that(compared + approximated == reliable && compared >= 0.99 * reliable, name + ": too few points are compared");
+    all_compared[loop] += compared;
+    all_seconds[loop] += seconds;
     std::printf("%-45s %s %6d points %.1e, tangents %.1e, %d second %.1e, %d faces without surface, %d points in Bfr's last "
                 "squares, %d where it breaks\n",
                 name.c_str(), loop ? "Loop" : "CC  ", compared, largest.position, largest.first, seconds, largest.second,
@@ -139,4 +146,12 @@ void compare(std::string const& name, Polygons const& polygons, Mesh const& mesh
 
 }  // namespace
 
-int main() { return for_each_cage(compare, true); }
+int main() {
+    int const code = for_each_cage(compare, true);
+    std::printf("Catmull-Clark: %zu parameters, %zu with second derivatives; Loop: %zu, %zu\n", all_compared[0], all_seconds[0],
+                all_compared[1], all_seconds[1]);
+    if (code == skipped) return code;
+    check::that(all_compared[0] > 1000000 && all_compared[1] > 100000, "too few points");
+    check::that(all_seconds[0] > 100000 && all_seconds[1] > 10000, "too few second derivatives");
+    return check::result();
+}

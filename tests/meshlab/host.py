@@ -29,18 +29,18 @@ def read_obj(path):
     return positions, faces
 
 
-def write_ply(path, positions, faces, vertices=(), selected_faces=()):
-    """A mesh whose given vertices and faces are selected."""
+def write_ply(path, positions, faces, vertices=(), face_flags=None):
+    """A mesh whose given vertices are selected; face_flags has the flags of faces that have some."""
     lines = ["ply", "format ascii 1.0", f"element vertex {len(positions)}"]
     lines += [f"property float {axis}" for axis in "xyz"] + ["property int flags"]
     lines += [f"element face {len(faces)}", "property list uchar int vertex_indices", "property int flags", "end_header"]
-    vertices, selected_faces = set(vertices), set(selected_faces)
+    vertices, face_flags = set(vertices), face_flags or {}
     for i, p in enumerate(positions):
         # As single precision, which MeshLab has: both programs read the same numbers.
         single = struct.unpack("fff", struct.pack("fff", *p))
         lines.append(" ".join(map(repr, single)) + f" {SELECTED if i in vertices else 0}")
     for i, face in enumerate(faces):
-        lines.append(f"{len(face)} " + " ".join(map(str, face)) + f" {SELECTED if i in selected_faces else 0}")
+        lines.append(f"{len(face)} " + " ".join(map(str, face)) + f" {face_flags.get(i, 0)}")
     Path(path).write_text("\n".join(lines) + "\n")
 
 

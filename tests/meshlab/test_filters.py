@@ -7,7 +7,8 @@ import tempfile
 import unittest
 from pathlib import Path
 
-from host import LEAF_CHAIR, ROOT, feature, enum, meshlab, open_file, parameter, read_obj, read_ply, welt, write_ply
+from host import (FAUX, LEAF_CHAIR, ROOT, SELECTED, enum, feature, meshlab, open_file, parameter, read_obj, read_ply, welt,
+                  write_ply)
 
 GROOVE = {"width": "1.6", "depth": "0.6"}
 RING = "ring:3,331"
@@ -96,7 +97,7 @@ class Filters(unittest.TestCase):
 
     def test_marks_of_selected_faces(self):
         positions, faces = tube()
-        write_ply(self.cage, positions, faces, selected_faces=range(6))
+        write_ply(self.cage, positions, faces, face_flags=dict.fromkeys(range(6), SELECTED))
         self.run_filter(feature("Welt: Groove", {"width": "0.3", "depth": "0.05"}, "faces", polygon_file=self.obj))
         # The first row of faces has the first two rows of vertices.
         self.apply("groove", {"width": "0.3", "depth": "0.05"}, "cut:" + ",".join(map(str, range(12))))
@@ -187,10 +188,10 @@ class Filters(unittest.TestCase):
 class Failures(unittest.TestCase):
     """Each ends with an error, says what to do, and writes nothing."""
 
-    def fails(self, mesh, a_filter, *words, selected=()):
+    def fails(self, mesh, a_filter, *words, **flags):
         with tempfile.TemporaryDirectory() as folder:
             cage, out = Path(folder) / "cage.ply", Path(folder) / "out.ply"
-            write_ply(cage, *mesh, vertices=selected)
+            write_ply(cage, *mesh, **flags)
             before = cage.read_bytes()
             code, text = meshlab([a_filter], [cage], out)
             self.assertNotEqual(code, 0, text)
@@ -206,7 +207,7 @@ class Failures(unittest.TestCase):
         self.fails(tube(), feature("Welt: Groove", GROOVE), "selectors is empty: name edges")
 
     def test_all_selected(self):
-        self.fails(tube(), feature("Welt: Groove", GROOVE, "vertices"), "name some vertices of a component, not all", selected=range(24))
+        self.fails(tube(), feature("Welt: Groove", GROOVE, "vertices"), "name some vertices of a component, not all", vertices=range(24))
 
     def test_width_too_large(self):
         self.fails(tube(), feature("Welt: Groove", {"width": "7", "depth": "0.1"}, selectors="ring:6,12"),
@@ -226,6 +227,21 @@ class Failures(unittest.TestCase):
         positions, faces = tube()
         broken = (positions + [(3.0, 0.0, 0.0), (3.0, 1.0, 0.0)], faces + [(0, 24, 25)])
         self.fails(broken, feature("Welt: Groove", GROOVE, selectors="ring:6,12"), "vertex 0")
+
+    def test_points_only(self):
+        for name in ("Welt: Groove", "Welt: Limit Surface"):
+            a_filter = feature(name, GROOVE, selectors=RING)
+            if name != "Welt: Groove":
+                a_filter = (name, [parameter("Int", "level", 1), enum("boundary", 0, 3)])
+            self.fails((tube()[0], []), a_filter, "the layer has no faces")
+
+    def test_faux_edges_round_a_vertex(self):
+        # A quad in four triangles, whose tip is on no edge of the polygon.
+        positions = [(0.0, 0.0, 0.0), (1.0, 0.0, 0.0), (1.0, 1.0, 0.0), (0.0, 1.0, 0.0), (0.5, 0.5, 0.5)]
+        faces = [(i, (i + 1) % 4, 4) for i in range(4)]
+        inside = dict.fromkeys(range(4), FAUX << 1 | FAUX << 2)
+        self.fails((positions, faces), feature("Welt: Groove", GROOVE, selectors="edge:0,1"),
+                   "are no polygon; run 'Turn into a Pure-Triangular mesh' first", face_flags=inside)
 
     def test_edges_without_length(self):
         positions, faces = tube()

@@ -126,14 +126,26 @@ impl Track {
         let normal = self.normals[i].lerp(self.normals[j], t).normalize_or_zero();
         let offset = point - a.lerp(b, t);
         let in_surface = offset - normal * offset.dot(normal);
-        let side = if offset.dot(left) < 0.0 { -1.0 } else { 1.0 };
-        Some(Beside {
-            distance: side * in_surface.length(),
-            along: self.lengths[i] + t * a.distance(b),
-            left,
-            normal,
-            inside,
-        })
+        // Beyond an end the curve counts as going on straight.
+        let across = offset.dot(left);
+        let distance = if inside { across.signum() * in_surface.length() } else { across };
+        Some(Beside { distance, along: self.lengths[i] + t * a.distance(b), left, normal, inside })
+    }
+
+    /// Length of a track that does not close.
+    pub(super) fn open_length(&self) -> Option<f64> {
+        (!self.closed).then_some(self.length)
+    }
+
+    /// Distance, in the surface, of `point` from the nearer end of an open track.
+    pub(in super::super) fn off_end(&self, point: DVec3) -> Option<f64> {
+        let last = self.points.len().checked_sub(1)?;
+        let distance = |i: usize| {
+            let (end, normal) = (self.points.get(i)?, self.normals.get(i)?);
+            let offset = point - *end;
+            Some((offset - *normal * offset.dot(*normal)).length())
+        };
+        (!self.closed).then(|| Some(distance(0)?.min(distance(last)?))).flatten()
     }
 
     /// Length of the track between two places on it, the shorter way.

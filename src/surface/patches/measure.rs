@@ -9,17 +9,19 @@ use crate::surface::LimitSurface;
 use glam::{DVec2, DVec3};
 
 /// Samples per side of a span beside an extraordinary vertex.
-const FINE: usize = 8;
-/// Samples per side of other spans.
-const COARSE: usize = 1;
+const FINE: usize = 9;
 /// Steps towards the foot of a sample.
 const STEPS: usize = 3;
 
-/// Greatest distance of a patch to the surface, in units and in parts of the mean length of the control face's edges.
+/// How far a patch is from the surface.
 #[derive(Clone, Copy, Default)]
 pub(super) struct Distance {
+    /// Greatest distance in units of the model.
     pub(super) absolute: f64,
+    /// The same in parts of the mean length of the control face's edges.
     pub(super) relative: f64,
+    /// Greatest angle in degrees between the normals, where the patch deviates.
+    pub(super) angle: f64,
 }
 
 /// Measures patches of a surface.
@@ -47,7 +49,6 @@ impl Ruler<'_> {
         which: Spans,
     ) -> Distance {
         let mut worst = Distance::default();
-        let rounding = self.surface.tolerance.max(1e-13 * self.surface.size);
         let (us, vs) = (spans(&patch.knots_u), spans(&patch.knots_v));
         for (j, &[v0, v1]) in vs.iter().enumerate() {
             for (i, &[u0, u1]) in us.iter().enumerate() {
@@ -56,33 +57,48 @@ impl Ruler<'_> {
                 if !last && which == Spans::Last {
                     continue;
                 }
-                let count = if last { FINE } else { COARSE };
-                let place =
-                    |k: usize, low: f64, high: f64| low + (high - low) * (k as f64 + 0.5) / count as f64;
+                // Beside a vertex also along the sides, where patches deviate most; else in the middle.
+                let count = if last { FINE } else { 1 };
+                let share = |k: usize| if last { k as f64 / (FINE - 1) as f64 } else { 0.5 };
                 for k in 0..count * count {
-                    let at = DVec2::new(place(k % count, u0, u1), place(k / count, v0, v1));
-                    let Some(found) = patch.evaluate(at.x, at.y) else { continue };
-                    let far = self.foot_distance(pieces, region, at, found.position);
-                    if far > rounding {
-                        let (base, _) = patch_of(self.cells, region, at);
-                        let length = edge_length(self.mesh, self.surface.places[base].face);
-                        worst.absolute = worst.absolute.max(far);
-                        worst.relative = worst.relative.max(far / length);
-                    }
+                    let (x, y) = (share(k % count), share(k / count));
+                    let at = DVec2::new(u0 + (u1 - u0) * x, v0 + (v1 - v0) * y);
+                    self.sample(pieces, region, patch, at, &mut worst);
                 }
             }
         }
         worst
     }
 
-    /// Distance of `point` to the surface near `at` in a region: never less than that to the closest point.
-    fn foot_distance(&self, pieces: &mut Pieces, region: &Region, mut at: DVec2, point: DVec3) -> f64 {
-        let mut nearest = f64::INFINITY;
+    fn sample(
+        &self,
+        pieces: &mut Pieces,
+        region: &Region,
+        patch: &SplinePatch,
+        at: DVec2,
+        worst: &mut Distance,
+    ) {
+        let Some(found) = patch.evaluate(at.x, at.y) else { return };
+        let Some(foot) = self.foot(pieces, region, at, found.position) else { return };
+        let far = foot.position.distance(found.position);
+        if far <= self.surface.tolerance.max(1e-13 * self.surface.size) {
+            return;
+        }
+        let (base, _) = patch_of(self.cells, region, at);
+        let length = edge_length(self.mesh, self.surface.places[base].face);
+        worst.absolute = worst.absolute.max(far);
+        worst.relative = worst.relative.max(far / length);
+        worst.angle = worst.angle.max(angle(found, foot).unwrap_or(0.0));
+    }
+
+    /// The nearest of the points of the surface that lie on the way from `at` to the foot of `point`; `None` at an
+    /// extraordinary vertex.
+    fn foot(&self, pieces: &mut Pieces, region: &Region, mut at: DVec2, point: DVec3) -> Option<SplinePoint> {
+        let mut nearest = pieces.point(self.cells, region, at)?;
+        let mut here = nearest;
         for _ in 0..STEPS {
-            let Some(here) = pieces.point(self.cells, region, at) else { break };
             let offset = point - here.position;
-            nearest = nearest.min(offset.length());
-            if nearest <= self.surface.tolerance {
+            if offset.length() <= self.surface.tolerance {
                 break;
             }
             let (uu, uv, vv) = (here.du.length_squared(), here.du.dot(here.dv), here.dv.length_squared());
@@ -94,9 +110,21 @@ impl Ruler<'_> {
             let step = DVec2::new(vv * a - uv * b, uu * b - uv * a) / determinant;
             let end = DVec2::new(region.size[0] as f64, region.size[1] as f64);
             at = (at + step).clamp(DVec2::ZERO, end);
+            let Some(next) = pieces.point(self.cells, region, at) else { break };
+            here = next;
+            if here.position.distance(point) < nearest.position.distance(point) {
+                nearest = here;
+            }
         }
-        nearest
+        Some(nearest)
     }
+}
+
+/// The angle in degrees between the normals of two points.
+fn angle(a: SplinePoint, b: SplinePoint) -> Option<f64> {
+    let [a, b] = [a, b].map(|point| point.du.cross(point.dv).try_normalize());
+    let (a, b) = (a?, b?);
+    Some(a.cross(b).length().atan2(a.dot(b)).to_degrees())
 }
 
 /// The spans of flat knots.
@@ -113,7 +141,7 @@ fn edge_length(mesh: &Mesh, face: FaceId) -> f64 {
 
 /// Greatest angle in degrees between the normals of two patches along a shared side.
 pub(super) fn normal_jump(patch: &SplinePatch, side: usize, other: &SplinePatch, there: usize) -> f64 {
-    let own = if side % 2 == 0 { &patch.knots_u } else { &patch.knots_v };
+    let own = if side.is_multiple_of(2) { &patch.knots_u } else { &patch.knots_v };
     let length = own.last().copied().unwrap_or(0.0);
     let mut worst: f64 = 0.0;
     for [low, high] in spans(own) {
@@ -121,13 +149,8 @@ pub(super) fn normal_jump(patch: &SplinePatch, side: usize, other: &SplinePatch,
             let t = low + share * (high - low);
             // Sides 2 and 3 run against the parameter, and the other patch has the side in the opposite sense.
             let along = if side < 2 { t } else { length - t };
-            let normal =
-                |found: Option<SplinePoint>| found.and_then(|found| found.du.cross(found.dv).try_normalize());
-            let normals =
-                (normal(at_side(patch, side, along)), normal(at_side(other, there, length - along)));
-            if let (Some(a), Some(b)) = normals {
-                worst = worst.max(a.cross(b).length().atan2(a.dot(b)).to_degrees());
-            }
+            let both = at_side(patch, side, along).zip(at_side(other, there, length - along));
+            worst = worst.max(both.and_then(|(a, b)| angle(a, b)).unwrap_or(0.0));
         }
     }
     worst

@@ -79,7 +79,11 @@ pub struct Patches {
 }
 
 /// Rings at first and at most.
-const RINGS: std::ops::RangeInclusive<u32> = 3..=10;
+const RINGS: std::ops::RangeInclusive<u32> = 3..=16;
+/// Aim for the angle between the normals of patches and surface, in degrees, and the most rings that are spent on it: a surface
+/// with a fold has no normal to come near to.
+const ANGLE: f64 = 1.0;
+const RINGS_FOR_NORMALS: u32 = 8;
 /// What one more ring divides the deviation by at best: seen at valence 3.
 const PER_RING: f64 = 6.0;
 
@@ -125,14 +129,17 @@ impl Patches {
         let mut patches = loop {
             let inner = knots::inner_knots(cells, rings);
             let mut patches = Vec::with_capacity(regions.len());
-            let mut worst: f64 = 0.0;
+            let (mut worst, mut angle): (f64, f64) = (0.0, 0.0);
             for (number, region) in regions.iter().enumerate() {
                 step(number as f64 / regions.len() as f64)?;
                 let patch = make(cells, region, &inner, pieces);
-                worst = worst.max(ruler.distance(pieces, region, &patch, Spans::Last).relative);
+                let found = ruler.distance(pieces, region, &patch, Spans::Last);
+                (worst, angle) = (worst.max(found.relative), angle.max(found.angle));
                 patches.push(patch);
             }
-            if worst <= options.tolerance || rings >= *RINGS.end() {
+            let near = worst <= options.tolerance || rings >= *RINGS.end();
+            let upright = angle <= ANGLE || rings >= RINGS_FOR_NORMALS;
+            if near && upright {
                 break patches;
             }
             let missing = (worst / options.tolerance).log(PER_RING).floor().clamp(1.0, 4.0);

@@ -19,6 +19,10 @@ impl Region {
         self.cells[j * self.size[0] + i]
     }
 
+    fn holds(&self, cell: usize) -> bool {
+        self.cells.iter().any(|at| at.cell == cell)
+    }
+
     /// The cell at corner `corner`, by the side of the region that begins there.
     pub(super) fn corner(&self, corner: usize) -> Side {
         let [m, n] = self.size.map(|count| count - 1);
@@ -34,7 +38,8 @@ impl Region {
     }
 }
 
-/// Cuts the cells into rectangles of at most `most` by `most` cells. All sides of regions meet end to end.
+/// Cuts the cells into rectangles of at most `most` by `most` cells. All sides of regions meet end to end, and none meets
+/// another of the same region, which CAD kernels dislike.
 pub(super) fn regions(cells: &[Cell], most: usize) -> Vec<Region> {
     let mut lines = Lines::new(cells);
     loop {
@@ -60,10 +65,10 @@ fn gather(lines: &Lines, cells: &[Cell], most: usize) -> (Vec<Region>, Vec<Side>
         }
         let start = Side::new(cell, 0);
         let Some(origin) = last(lines, start, 3).and_then(|left| last(lines, left, 0)) else {
-            // A ring: cut it here.
-            taken[cell] = true;
+            // A ring: cut it here, once.
             let across = if last(lines, start, 3).is_none() { 3 } else { 0 };
             cuts.push(Side::new(cell, across));
+            take_all(lines, &mut taken, cell);
             continue;
         };
         let rows = row(lines, origin, 2);
@@ -86,7 +91,11 @@ fn gather(lines: &Lines, cells: &[Cell], most: usize) -> (Vec<Region>, Vec<Side>
             lines.is_end(cell, side) && cells[cell].irregular[side]
         });
         for (axis, count) in size.into_iter().enumerate() {
-            let parts = count.div_ceil(most);
+            let meets_itself = [1 - axis, 3 - axis].into_iter().any(|side| {
+                let Side { cell, side } = region.corner(side);
+                cells[cell].beyond[side].is_some_and(|beyond| region.holds(beyond.cell))
+            });
+            let parts = count.div_ceil(most).max(if meets_itself { 2.min(count) } else { 1 });
             for part in 1..parts {
                 let at = part * count / parts;
                 // The lower side of that cell along the axis.
@@ -97,6 +106,16 @@ fn gather(lines: &Lines, cells: &[Cell], most: usize) -> (Vec<Region>, Vec<Side>
         regions.push(region);
     }
     (regions, cuts)
+}
+
+/// Marks all cells between the same cuts as `cell`.
+fn take_all(lines: &Lines, taken: &mut [bool], cell: usize) {
+    let mut open = vec![cell];
+    while let Some(cell) = open.pop() {
+        if !std::mem::replace(&mut taken[cell], true) {
+            open.extend((0..4).filter_map(|side| lines.across(Side::new(cell, side))).map(|at| at.cell));
+        }
+    }
 }
 
 /// The cell beyond, in the same orientation: `direction` 0 is down, 1 right, 2 up, 3 left.

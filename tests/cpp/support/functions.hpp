@@ -36,7 +36,9 @@ public:
     welt_patch_options* patch_options();
 
     // All that a call may have changed, as bytes; reports are left out, since they have times.
-    std::string content() const;
+    std::string content() const { return handles() + buffers(); }
+    std::string handles() const;
+    std::string buffers() const;
     // Whether a call has written a handle.
     bool has_result() const;
 

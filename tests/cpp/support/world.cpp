@@ -170,21 +170,27 @@ std::string content_of(welt_mesh const* mesh) {
     return bytes;
 }
 
-std::string World::content() const {
+std::string World::handles() const {
     std::string bytes;
     for (welt_mesh* mesh : {meshes_[0], meshes_[1], meshes_[2], out.mesh}) bytes += content_of(mesh);
-    append(bytes, out.doubles.data(), out.doubles.size());
-    append(bytes, out.more_doubles.data(), out.more_doubles.size());
-    append(bytes, out.integers.data(), out.integers.size());
-    append(bytes, out.more_integers.data(), out.more_integers.size());
-    append(bytes, out.places.data(), out.places.size());
-    append(bytes, out.points.data(), out.points.size());
     bytes += "selection " + std::to_string(welt_selection_count(out.selection));
     bytes += "rules " + std::to_string(welt_rules_parameter_count(out.rules));
     bytes += "refinement " + std::to_string(welt_refinement_vertex_count(out.refinement, 1));
     bytes += "patches " + std::to_string(welt_patches_count(out.patches)) + " " + std::to_string(out.patch.face_count);
     bytes += out.surface ? "surface" : "";
     bytes += out.job ? "job" : "";
+    return bytes;
+}
+
+std::string World::buffers() const {
+    std::string bytes;
+    append(bytes, out.doubles.data(), out.doubles.size());
+    append(bytes, out.more_doubles.data(), out.more_doubles.size());
+    append(bytes, out.integers.data(), out.integers.size());
+    append(bytes, out.more_integers.data(), out.more_integers.size());
+    append(bytes, out.places.data(), out.places.size());
+    append(bytes, out.points.data(), out.points.size());
+    append(bytes, out.text.data(), out.text.size());
     return bytes;
 }
 
