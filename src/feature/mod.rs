@@ -54,6 +54,7 @@ pub fn linear_rules() -> Result<RuleSet, RulesError> {
             "crossings.rules" => file!("crossings.rules"),
             "bands.rules" => file!("bands.rules"),
             "parity.rules" => file!("parity.rules"),
+            "paper_tees.rules" => file!("paper_tees.rules"),
             "tees.rules" => file!("tees.rules"),
             "ends.rules" => file!("ends.rules"),
             "meets.rules" => file!("meets.rules"),
