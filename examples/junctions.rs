@@ -19,7 +19,7 @@ use welt::subdivision::{limit_normal, limit_positions, refine};
 fn piped(rules: &RuleSet) {
     const D: f64 = 0.05;
     for case in piped_cases() {
-        let result = apply(rules, sheet::sheet(flat), &case.bands, &case.marks, Method::None, &[]);
+        let result = apply(rules, sheet::sheet(flat), &case.bands, &case.marks, Method::None, case.set);
         let samples = sheet::samples(&result, &result.base, CENTRE, 1.5, 16);
         let along = |y: f64, beside: f64, sign: f64| {
             let [a, b] = [DVec2::new(2.1, y), DVec2::new(4.9, y)];
@@ -51,7 +51,7 @@ fn flat_sheets(rules: &RuleSet) {
         println!("w = {w}");
         for case in cases(w) {
             let ideal = Ideal::new(&case.bands, case.lines.clone());
-            let result = apply(rules, sheet::sheet(flat), &case.bands, &case.marks, Method::None, &[]);
+            let result = apply(rules, sheet::sheet(flat), &case.bands, &case.marks, Method::None, case.set);
             let samples = sheet::samples(&result, &result.base, CENTRE, 1.5, 32);
             let [rms, max] = sheet::error(&samples, &ideal, CENTRE, DEPTH);
             let half_depth = 1.1934 * w + 0.06285;
@@ -115,8 +115,8 @@ fn curved(rules: &RuleSet) {
             {
                 let mut bands = case.bands.clone();
                 bands.iter_mut().for_each(|band| band.depth = depth);
-                let grid = apply(rules, sheet::sheet(flat), &bands, &case.marks, Method::None, &[]).base;
-                let result = apply(rules, sheet::sheet(shape), &bands, &case.marks, Method::Solve, &[]);
+                let grid = apply(rules, sheet::sheet(flat), &bands, &case.marks, Method::None, case.set).base;
+                let result = apply(rules, sheet::sheet(shape), &bands, &case.marks, Method::Solve, case.set);
                 let samples = sheet::samples(&result, &grid, CENTRE, 1.5, 16);
                 if case.name == "DE3W" {
                     let (fitted, end) = sheet::fitted_end(&samples, &bands, case.lines[0], depth);
@@ -159,8 +159,8 @@ fn angles(rules: &RuleSet) {
             // A corner turns by the angle or by its supplement.
             for cos in if case.name == "corner" && degrees < 90.0 { vec![cos, -cos] } else { vec![cos] } {
                 let shape = |x: f64, y: f64| DVec3::new(x + cos * y, sin * y, 0.0);
-                let result = apply(rules, sheet::sheet(shape), &case.bands, &case.marks, Method::None, &[]);
-                let grid = apply(rules, sheet::sheet(flat), &case.bands, &case.marks, Method::None, &[]).base;
+                let result = apply(rules, sheet::sheet(shape), &case.bands, &case.marks, Method::None, case.set);
+                let grid = apply(rules, sheet::sheet(flat), &case.bands, &case.marks, Method::None, case.set).base;
                 let samples = sheet::samples(&result, &grid, CENTRE, 1.5, 16);
                 let ideal = Ideal::new(&case.bands, case.lines.clone()).sheared(DVec2::new(cos, sin));
                 let [rms, max] = sheet::error(&samples, &ideal, CENTRE, DEPTH);
@@ -338,7 +338,7 @@ fn pictures(rules: &RuleSet, folder: &std::path::Path) {
         ("piping_piping", "piping across piping"),
     ] {
         let case = all.iter().find(|case| case.name == name).expect("a case");
-        let result = apply(rules, sheet::sheet(flat), &case.bands, &case.marks, Method::None, &[]);
+        let result = apply(rules, sheet::sheet(flat), &case.bands, &case.marks, Method::None, case.set);
         let ideal = Ideal::new(&case.bands, case.lines.clone());
         let fine = |mesh: &Mesh| {
             let polygons = refine(mesh, 4).expect("fits").into_polygons();

@@ -19,6 +19,8 @@ pub struct Case {
     pub bands: Vec<Band>,
     pub marks: Vec<Marked>,
     pub lines: Vec<Line>,
+    /// Parameters of the rules.
+    pub set: &'static [(&'static str, f64)],
 }
 
 pub fn cases(w: f64) -> Vec<Case> {
@@ -28,49 +30,70 @@ pub fn cases(w: f64) -> Vec<Case> {
     let stem = |band| line([3.5, -1.0], [3.5, 3.5], band);
     let t = [upwards(3, 0..=3, 0), sideways(3, 0..=7, 0)].concat();
     vec![
-        Case { name: "straight", bands: g(), marks: sideways(3, 0..=7, 0), lines: vec![bar()] },
+        Case { name: "straight", bands: g(), marks: sideways(3, 0..=7, 0), lines: vec![bar()], set: &[] },
         Case {
             name: "corner",
             bands: g(),
             marks: [upwards(3, 0..=3, 0), sideways(3, 4..=7, 0)].concat(),
             lines: vec![stem(0), line([3.5, 3.5], [end, 3.5], 0)],
+            set: &[],
         },
         Case {
             name: "crossing",
             bands: g(),
             marks: [upwards(3, 0..=7, 0), sideways(3, 0..=7, 0)].concat(),
             lines: vec![bar(), line([3.5, -1.0], [3.5, end], 0)],
+            set: &[],
         },
-        Case { name: "T-DE", bands: g(), marks: t.clone(), lines: vec![bar(), stem(0)] },
+        Case { name: "T-DE", bands: g(), marks: t.clone(), lines: vec![bar(), stem(0)], set: &[] },
         Case {
             name: "T-D",
             bands: g(),
             marks: [t.clone(), upwards(3, 4..=7, 1)].concat(),
             lines: vec![bar(), stem(0)],
+            set: &[],
+        },
+        Case {
+            name: "T-B",
+            bands: g(),
+            marks: [t.clone(), upwards(3, 4..=7, 1)].concat(),
+            lines: vec![bar(), stem(0)],
+            set: &[("paper_tees", 1.0)],
+        },
+        Case {
+            name: "T-6",
+            bands: g(),
+            marks: t.clone(),
+            lines: vec![bar(), stem(0)],
+            set: &[("paper_tees", 1.0)],
         },
         Case {
             name: "T, stem of four lines",
             bands: vec![Band::groove(w, DEPTH), Band::channel(w, DEPTH)],
             marks: [upwards(3, 0..=3, 1), sideways(3, 0..=7, 0)].concat(),
             lines: vec![bar(), stem(1)],
+            set: &[],
         },
         Case {
             name: "DE3W",
             bands: g(),
             marks: upwards(3, 0..=3, 0),
             lines: vec![line([3.5, -1.0], [3.5, 3.5 - w - 0.08], 0)],
+            set: &[],
         },
         Case {
             name: "DE3V",
             bands: g(),
             marks: [upwards(3, 0..=3, 0), upwards(3, 4..=7, 1)].concat(),
             lines: vec![line([3.5, -1.0], [3.5, 3.5 - w - 0.08], 0)],
+            set: &[],
         },
         Case {
             name: "DE4",
             bands: vec![Band::channel(w, DEPTH)],
             marks: upwards(3, 0..=3, 0),
             lines: vec![line([3.5, -1.0], [3.5, 3.5 - w - 0.04], 0)],
+            set: &[],
         },
     ]
 }
@@ -93,6 +116,7 @@ pub fn piped_cases() -> Vec<Case> {
         bands: bands(),
         marks: [along.clone(), across].concat(),
         lines: [vec![bar()], lines].concat(),
+        set: &[],
     };
     vec![
         case("piping alone", vec![], vec![]),
@@ -110,13 +134,15 @@ pub fn piped_cases() -> Vec<Case> {
             bands: bands(),
             marks: [sideways(3, 0..=7, 1), upwards(3, 0..=3, 0)].concat(),
             lines: vec![line([-1.0, 3.5], [end, 3.5], 1), stem(0)],
+            set: &[],
         },
-        Case { name: "piping ends", bands: bands(), marks: upwards(3, 0..=3, 0), lines: vec![stem(0)] },
+        Case { name: "piping ends", bands: bands(), marks: upwards(3, 0..=3, 0), lines: vec![stem(0)], set: &[] },
         Case {
             name: "piping corner",
             bands: bands(),
             marks: [upwards(3, 0..=3, 0), sideways(3, 4..=7, 0)].concat(),
             lines: vec![stem(0), line([3.5, 3.5], [end, 3.5], 0)],
+            set: &[],
         },
     ]
 }
