@@ -159,8 +159,10 @@ fn angles(rules: &RuleSet) {
             // A corner turns by the angle or by its supplement.
             for cos in if case.name == "corner" && degrees < 90.0 { vec![cos, -cos] } else { vec![cos] } {
                 let shape = |x: f64, y: f64| DVec3::new(x + cos * y, sin * y, 0.0);
-                let result = apply(rules, sheet::sheet(shape), &case.bands, &case.marks, Method::None, case.set);
-                let grid = apply(rules, sheet::sheet(flat), &case.bands, &case.marks, Method::None, case.set).base;
+                let result =
+                    apply(rules, sheet::sheet(shape), &case.bands, &case.marks, Method::None, case.set);
+                let grid =
+                    apply(rules, sheet::sheet(flat), &case.bands, &case.marks, Method::None, case.set).base;
                 let samples = sheet::samples(&result, &grid, CENTRE, 1.5, 16);
                 let ideal = Ideal::new(&case.bands, case.lines.clone()).sheared(DVec2::new(cos, sin));
                 let [rms, max] = sheet::error(&samples, &ideal, CENTRE, DEPTH);

@@ -136,7 +136,13 @@ pub fn piped_cases() -> Vec<Case> {
             lines: vec![line([-1.0, 3.5], [end, 3.5], 1), stem(0)],
             set: &[],
         },
-        Case { name: "piping ends", bands: bands(), marks: upwards(3, 0..=3, 0), lines: vec![stem(0)], set: &[] },
+        Case {
+            name: "piping ends",
+            bands: bands(),
+            marks: upwards(3, 0..=3, 0),
+            lines: vec![stem(0)],
+            set: &[],
+        },
         Case {
             name: "piping corner",
             bands: bands(),
