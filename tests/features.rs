@@ -296,6 +296,9 @@ fn mistakes_in_profiles_name_file_and_line() {
         ("across = 0.5", "across = ", 29, ""),
     ];
     assert!(Profile::parse("twin.toml", TWIN).is_ok());
+    let absent = Profile::named("absent.toml").expect_err("no file").to_string();
+    assert!(absent.starts_with("cannot read the profile file absent.toml: "), "{absent}");
+    assert!(absent.contains("the folder profiles") && absent.contains("groove, ridge"), "{absent}");
     for (from, to, line, message) in cases {
         let error = Profile::parse("twin.toml", &TWIN.replacen(from, to, 1)).expect_err(to).to_string();
         println!("{error}");

@@ -195,6 +195,41 @@ fn a_typo_in_a_rule_file() {
     folder.welt(&["rules", "check", shipped.to_str().unwrap()]).succeeds();
 }
 
+/// Each names rule, file and place, and writes nothing.
+#[test]
+fn rules_that_fail_while_they_run() {
+    let folder = Folder::new("failing");
+    let cases = [
+        // Every application makes the next one possible.
+        (
+            "rule Grow { e(color) }\naction { e dup vertexCW e vertexpos e edgemate vertexpos 0.5 lerp makeEV /color 1 attrset }\n",
+            "Grow",
+        ),
+        ("rule Tear { e(color) }\naction {\n  e vertexCW killEV\n  e killEF e killEF\n}\n", "Tear"),
+        (
+            "rule Flat { e(color) }\naction { e \"color\" attrdel e e vertexpos makeEVone pop e killEF }\n",
+            "Flat",
+        ),
+        ("rule Throw { e(color) }\naction {\n  \"no way\" throw\n}\n", "Throw"),
+    ];
+    for (text, rule) in cases {
+        fs::write(folder.0.join("own.rules"), text).unwrap();
+        let run = folder.welt(&[
+            "apply",
+            "sheet.obj",
+            "-o",
+            "out.obj",
+            "--rules",
+            "own.rules",
+            "--mark",
+            "edge:1,5",
+        ]);
+        println!("{}", run.err);
+        run.fails(1, &[rule, "own.rules:", "edge ", "|"]);
+        assert_eq!(folder.files(), ["own.rules", "sheet.obj"], "{rule}");
+    }
+}
+
 #[test]
 fn files_that_cannot_be_read_or_written() {
     let folder = Folder::new("files");

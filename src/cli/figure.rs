@@ -172,13 +172,20 @@ pub fn reflection_lines(mesh: &Mesh) -> Result<Image, Failure> {
 }
 
 fn dimensions(report: &Report) -> String {
+    let several = report.features.len() > 1;
     let parts: Vec<String> = report
         .features
         .iter()
-        .flat_map(|feature| &feature.dimensions)
-        .filter(|d| d.stations > 0)
-        .map(|d| {
-            format!("{} asked {}, reached {}", d.name, significant(d.asked_mean), significant(d.reached_mean))
+        .filter_map(|feature| {
+            let measured = feature.dimensions.iter().filter(|d| d.stations > 0);
+            let list: Vec<String> = measured
+                .map(|d| {
+                    let [reached, asked] = [d.reached_mean, d.asked_mean].map(significant);
+                    format!("{} {reached} (asked {asked})", d.name)
+                })
+                .collect();
+            let of = if several { format!("{}: ", feature.kind) } else { String::new() };
+            (!list.is_empty()).then(|| of + &list.join(", "))
         })
         .collect();
     if parts.is_empty() { "limit surface".to_owned() } else { parts.join("; ") }

@@ -130,7 +130,7 @@ impl<'a> Run<'a> {
             for mark in traced.marks {
                 let edge = (mesh.source(mark.half_edge).0, mesh.target(mark.half_edge).0);
                 if !crossed.insert(mark.half_edge.edge()) {
-                    return Err(FeatureError::CrossedTwice { edge });
+                    return Err(FeatureError::CrossedTwice { edge, curve: index });
                 }
                 self.edges.push(edge);
                 self.track_of.push(Some(index));

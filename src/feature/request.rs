@@ -288,11 +288,17 @@ pub enum FeatureError {
         /// What is wrong with it, and the remedy.
         problem: String,
     },
-    /// An edge that curves or marks cross twice.
-    #[error("edge {},{} is crossed twice; features cross an edge once: move one of them, or refine the mesh there", edge.0, edge.1)]
+    /// An edge that a curve crosses where another curve or a mark does already.
+    #[error(
+        "curve {curve} crosses edge {0},{1}, which another curve or a mark crosses, too; an edge is crossed once: move one \
+         of them, or refine the faces there first (--rules rules/patches.rules --mark edge:{0},{1})",
+        edge.0, edge.1
+    )]
     CrossedTwice {
         /// The edge.
         edge: (u32, u32),
+        /// The curve, counted from 0 in the order of the selection.
+        curve: usize,
     },
     /// A width that an edge cannot take.
     #[error(transparent)]

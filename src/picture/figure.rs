@@ -15,7 +15,8 @@ pub const MAX_PIXELS: usize = 4_194_304;
 /// Width of a picture for which the sizes of text are meant.
 const USUAL_PICTURE: f64 = 480.0;
 const INK: [u8; 3] = [34, 36, 40];
-const CAPTION_LINES: usize = 2;
+/// Enough for the dimensions of three features.
+const CAPTION_LINES: usize = 5;
 
 /// Pictures of one object side by side.
 #[derive(Clone, Debug)]

@@ -6,9 +6,10 @@ use std::fmt;
 use welt::feature::{self, FeatureError, Options, Profile, Report, Request};
 use welt::job::Job;
 use welt::mark::parity::Mode;
-use welt::mark::{Mark, Selection, Selector, Shape};
+use welt::mark::{Course, Curve, Mark, Selection, Selector, Shape};
 use welt::mesh::{FaceId, Mesh};
 use welt::optimise::Method;
+use welt::subdivision::evaluate;
 
 /// More marks take more time and find no more.
 const MOST_MARKS: usize = 20;
@@ -21,6 +22,8 @@ pub struct Model {
 pub struct Case<'m> {
     pub model: &'m Model,
     pub marks: Vec<Mark>,
+    /// Curves near the surface.
+    pub curves: Vec<Curve>,
     /// The features, as in `--feature`, and their parameters, as in `--set`.
     pub features: Vec<String>,
     pub settings: Vec<String>,
@@ -42,7 +45,15 @@ impl<'m> Case<'m> {
                 marks.entry(mark.half_edge.edge()).or_insert(mark);
             }
         }
-        if marks.is_empty() {
+        let mut curves = Vec::new();
+        if random.once_in(5) {
+            curves.extend(some_curve(&model.mesh, random));
+            // With marks beside it now and then: mostly they share edges, which is refused.
+            if !random.once_in(4) {
+                marks.clear();
+            }
+        }
+        if marks.is_empty() && curves.is_empty() {
             return None;
         }
         let percent = |x: f64| format!("{}%", (1000.0 * x).round() / 10.0);
@@ -58,6 +69,12 @@ impl<'m> Case<'m> {
                 _ => {}
             }
         }
+        if random.once_in(4) {
+            settings.push(format!("taper={}", random.pick(&[0.25, 0.5, 1.0])));
+        }
+        if random.once_in(8) {
+            settings.push("paper_tees=1".into());
+        }
         let request = Request::features(&features, &settings).ok()?;
         let options = Options {
             method: random.pick(&[Method::None, Method::None, Method::Solve]),
@@ -66,10 +83,20 @@ impl<'m> Case<'m> {
             ..Options::default()
         };
         let mut marks: Vec<Mark> = marks.into_values().collect();
-        let start = random.below(marks.len());
-        marks.rotate_left(start);
+        let start = random.below(marks.len().max(1));
+        marks.rotate_left(start.min(marks.len()));
         marks.truncate(MOST_MARKS);
-        Some(Self { model, marks, features, settings, request, options, is_flat, seed: random.bits() })
+        Some(Self {
+            model,
+            marks,
+            curves,
+            features,
+            settings,
+            request,
+            options,
+            is_flat,
+            seed: random.bits(),
+        })
     }
 
     pub fn apply(&self, mesh: &mut Mesh) -> Result<Report, FeatureError> {
@@ -78,7 +105,8 @@ impl<'m> Case<'m> {
 
     /// The same feature on marks of another mesh.
     pub fn apply_to(&self, mesh: &mut Mesh, marks: &[Mark]) -> Result<Report, FeatureError> {
-        let selection = Selection { marks: marks.to_vec(), ..Selection::default() };
+        let selection =
+            Selection { marks: marks.to_vec(), curves: self.curves.clone(), ..Selection::default() };
         feature::apply(mesh, &selection, &self.request, &self.options, &Job::new())
     }
 
@@ -90,7 +118,7 @@ impl<'m> Case<'m> {
             while start < self.marks.len() {
                 let end = (start + size).min(self.marks.len());
                 let removed: Vec<Mark> = self.marks.drain(start..end).collect();
-                if self.marks.is_empty() || !fails(self) {
+                if self.marks.is_empty() && self.curves.is_empty() || !fails(self) {
                     self.marks.splice(start..start, removed);
                     start = end;
                 }
@@ -124,8 +152,35 @@ impl fmt::Display for Case<'_> {
             let (a, b) = (self.model.mesh.source(mark.half_edge).0, self.model.mesh.target(mark.half_edge).0);
             write!(f, " --mark edge:{a},{b}@{}#{}", mark.t, mark.kind)?;
         }
+        for Curve { points, course, closed, kind } in &self.curves {
+            let points: Vec<String> = points.iter().map(|p| format!("{},{},{}", p.x, p.y, p.z)).collect();
+            let course = if *course == Course::Spline { "spline" } else { "polyline" };
+            let closed = if *closed { ";closed" } else { "" };
+            write!(f, " --mark '{course}:{}{closed}#{kind}'", points.join(";"))?;
+        }
         Ok(())
     }
+}
+
+/// A curve from face to face.
+fn some_curve(mesh: &Mesh, random: &mut Random) -> Option<Curve> {
+    let mut face = random.pick(&mesh.faces().collect::<Vec<_>>());
+    let mut points = Vec::new();
+    for _ in 0..2 + random.below(5) {
+        let [u, v] = [0.1, 0.1].map(|low| random.between(low, 0.9));
+        points.push(evaluate(mesh, face, 0, u, v)?.position);
+        let sides: Vec<_> = mesh.face_half_edges(face).map(|h| mesh.face(h.mate())).collect();
+        let next = random.pick(&sides);
+        if !next.is_boundary() {
+            face = next;
+        }
+    }
+    Some(Curve {
+        closed: points.len() > 2 && random.once_in(4),
+        points,
+        course: random.pick(&[Course::Polyline, Course::Spline]),
+        kind: random.pick(&["red", "red", "ridge", "dent"]).to_owned(),
+    })
 }
 
 /// Marks of one random selector.
@@ -134,10 +189,11 @@ fn some_marks(mesh: &Mesh, random: &mut Random) -> Vec<Mark> {
     let start = random.pick(&edges);
     let edge = (mesh.source(start).0, mesh.target(start).0);
     let kind = random.pick(&["red", "red", "red", "ridge", "piping"]).to_owned();
-    let resolve = |shape| {
-        let selector = Selector { shape, kind: kind.clone() };
+    let resolve_as = |shape, kind: &str| {
+        let selector = Selector { shape, kind: kind.to_owned() };
         Selection::resolve(mesh, &[selector]).map(|selection| selection.marks).unwrap_or_default()
     };
+    let resolve = |shape| resolve_as(shape, &kind);
     let near = |rings: usize| {
         let mut faces: Vec<FaceId> = mesh.outgoing(mesh.source(start)).map(|h| mesh.face(h)).collect();
         faces.retain(|f| !f.is_boundary());
@@ -156,7 +212,7 @@ fn some_marks(mesh: &Mesh, random: &mut Random) -> Vec<Mark> {
         2 => {
             let faces = near(random.below(3));
             let vertices = faces.iter().flat_map(|&f| mesh.face_vertices(f)).map(|v| v.0).collect();
-            resolve(Shape::Cut { vertices })
+            resolve_as(Shape::Cut { vertices }, if random.once_in(3) { "dent" } else { &kind })
         }
         3 => vec![Mark { half_edge: start, t: 0.5, kind: kind.clone(), breadth: None }],
         which => {

@@ -39,7 +39,8 @@ pub(crate) use ensure;
 
 /// Only these may refuse a feature; anything else is a rule that failed.
 pub fn is_refusal(error: &FeatureError) -> bool {
-    matches!(error, FeatureError::Width(_) | FeatureError::Unresolved { .. })
+    use FeatureError::{CrossedTwice, Curve, OpenLoop, Unresolved, Width};
+    matches!(error, Width(_) | Unresolved { .. } | OpenLoop { .. } | Curve { .. } | CrossedTwice { .. })
 }
 
 pub fn result_is_sound(case: &Case) -> Result<(), String> {
@@ -59,7 +60,7 @@ pub fn result_is_sound(case: &Case) -> Result<(), String> {
             ensure!(comparable(&report)? == comparable(&second)?, "the reports of two runs differ");
             ensure!(!case.options.strict || report.leftovers.is_empty(), "strict, but marks are left over");
             only_leftovers_have_attributes(&mesh, &report)?;
-            if matches!(case.options.method, Method::None) && case.is_flat {
+            if matches!(case.options.method, Method::None) && case.is_flat && case.curves.is_empty() {
                 leftovers_are_where_lines_end(case, &mesh, &report)?;
             }
             all_quads(case, &mesh, &report)
@@ -151,6 +152,8 @@ fn all_quads(case: &Case, mesh: &Mesh, report: &Report) -> Result<(), String> {
     let before = &case.model.mesh;
     let on_quads = case.marks.iter().flat_map(|mark| [mark.half_edge, mark.half_edge.mate()]);
     let on_quads = on_quads.map(|h| before.face(h)).all(|f| f.is_boundary() || before.arity(f) == 4);
+    // Which edges a curve crosses is not known here: any.
+    let on_quads = on_quads && (case.curves.is_empty() || before.faces().all(|f| before.arity(f) == 4));
     let is_paired = report.parity.as_ref().is_some_and(|parity| parity.left.is_empty());
     if case.options.parity != Mode::AllQuad || !on_quads || !is_paired || !report.leftovers.is_empty() {
         return Ok(());

@@ -80,11 +80,6 @@ pub fn result_is_the_same(case: &Case) -> Result<(), String> {
         (Ok(one), Ok(two)) => {
             ensure!(one.after == two.after, "{:?} and {:?} elements", one.after, two.after);
             ensure!(one.rules == two.rules, "rules: {:?} and {:?}", one.rules, two.rules);
-            // The last resort for features that do not fit together begins at the side that is found first; its marks
-            // are reported as unresolved.
-            if one.rules.iter().any(|(rule, count)| rule == "Unlike" && *count > 0) {
-                return Ok(());
-            }
             // A fit that has not converged after its steps may end elsewhere, and one that made the surface worse first was
             // such: their positions are not compared.
             if [&one, &two].iter().any(|report| report.fit.stop == Stop::StepLimit || report.fit.held > 0) {

@@ -62,9 +62,12 @@ pub(in super::super) fn trace(
 
     let mut beside: FxHashMap<VertexId, Beside> =
         vertices.iter().filter_map(|&v| Some((v, track.beside(limit_position(mesh, v))?))).collect();
+    // Nearest first: whether a vertex can move depends on those that moved before, and not on its number.
+    vertices.retain(|v| beside.contains_key(v));
+    vertices.sort_by(|a, b| beside[a].distance.abs().total_cmp(&beside[b].distance.abs()));
     let moved = make_room(mesh, &vertices, &mut beside, room(edge));
 
-    let mut marks = Vec::new();
+    let mut marks: Vec<(f64, Mark)> = Vec::new();
     let mut seen: FxHashSet<u32> = FxHashSet::default();
     for h in vertices.iter().flat_map(|&v| mesh.outgoing(v)) {
         let (Some(a), Some(b)) = (beside.get(&mesh.source(h)), beside.get(&mesh.target(h))) else { continue };
@@ -78,8 +81,12 @@ pub(in super::super) fn trace(
             continue;
         }
         let t = -a.distance / breadth;
-        marks.push(Mark { half_edge: h, t, kind: curve.kind.clone(), breadth: Some(breadth) });
+        let mark = Mark { half_edge: h, t, kind: curve.kind.clone(), breadth: Some(breadth) };
+        marks.push((a.along + t * (b.along - a.along), mark));
     }
+    // In the order in which the curve crosses them.
+    marks.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let marks: Vec<Mark> = marks.into_iter().map(|(_, mark)| mark).collect();
     if marks.is_empty() {
         return Err(error("it crosses no edge; it must reach from face to face"));
     }
