@@ -217,7 +217,11 @@ fn marks_name_their_feature() {
 #[test]
 fn settings_that_make_no_sense_are_refused() {
     let cases = [
-        (&["groove"][..], "height=1", "groove has no parameter 'height'; it has width, depth, taper"),
+        (
+            &["groove"][..],
+            "height=1",
+            "groove has no parameter 'height'; it has width, depth, paper_tees, taper",
+        ),
         (&["groove"], "depth=-1", "it must not be less than 0"),
         (&["loop"], "count=1.5", "it is a whole number"),
         (&["loop"], "count=17", "it lies between 1 and 16"),

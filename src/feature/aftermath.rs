@@ -30,8 +30,11 @@ pub(super) fn settle(mesh: &mut Mesh, has_features: bool, edges: &[(u32, u32)]) 
         mesh.set_attribute(Node::HalfEdge(h), unresolved, Some(kind));
     }
     for (domain, names) in [
-        (Domain::HalfEdge, &["cuts", "lines", "mark", "places", "kind", "color", "skew", "t"][..]),
-        (Domain::Vertex, &["mark", "line", "kind", "cross", "crosskind", "hold"][..]),
+        (
+            Domain::HalfEdge,
+            &["cuts", "lines", "mark", "places", "kind", "color", "skew", "end", "adjusted", "t"][..],
+        ),
+        (Domain::Vertex, &["mark", "line", "kind", "cross", "crosskind", "hold", "away"][..]),
     ] {
         for name in names {
             let name = mesh.intern(name);

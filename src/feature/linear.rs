@@ -259,6 +259,10 @@ impl Run<'_> {
             let kind = &self.features[self.feature_of[i]].kind;
             place_lines(mesh, mark, i, self.cuts(mesh, i, values)?, kind);
         }
+        let end = mesh.intern("end");
+        for &(h, depth) in &self.ends {
+            mesh.set_attribute(Node::HalfEdge(h), end, Some(Value::Number(depth)));
+        }
         mark::place(mesh, &self.parity);
         for (i, mark) in (self.marks.len()..).zip(&self.parity) {
             place_lines(mesh, mark, i, vec![mark.t], &mark.kind);

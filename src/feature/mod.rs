@@ -49,6 +49,7 @@ pub fn linear_rules() -> Result<RuleSet, RulesError> {
     }
     let included = |file: &str| {
         let text = match file {
+            "room.rules" => file!("room.rules"),
             "split.rules" => file!("split.rules"),
             "sides.rules" => file!("sides.rules"),
             "crossings.rules" => file!("crossings.rules"),

@@ -5,6 +5,7 @@ use super::section::Section;
 use crate::mark::Mark;
 use crate::mesh::{HalfEdgeId, Mesh};
 use glam::DVec3;
+use rustc_hash::FxHashMap;
 
 /// Least distance, as a fraction of the edge, that the lines keep from each other and from the edge's ends.
 const CLEARANCE: f64 = 0.01;
@@ -71,16 +72,48 @@ pub(super) fn crossing_sine(mesh: &Mesh, mark: &Mark) -> f64 {
     edge.normalize_or_zero().cross(direction).length().clamp(LEAST_SINE, 1.0)
 }
 
-/// Places along the marked edge, increasing in (0, 1), for a limit surface `width` wide across the feature; without a
-/// width the lines are spread over the edge, a single one lies at the mark.
+/// A vertex moves by at most this fraction of its shortest edge; `rules/room.rules` keeps to the same.
+const LONGEST_MOVE: f64 = 0.3;
+/// Room that rules 7 and 8 leave between a vertex and the nearest line, in half widths of the control band.
+const ROOM: f64 = 1.0 / 3.0;
+
+/// How far the ends of a marked edge may make room for its lines, model units: 0 for those nearer to the middle of the
+/// edge than the mark, on a boundary, on a crease, or where more of `marks` are near than rules 7 and 8 know about.
+pub(super) fn freedom(mesh: &Mesh, mark: &Mark, marks: &FxHashMap<u32, &Mark>) -> [f64; 2] {
+    let near = |h: HalfEdgeId| {
+        marks.get(&h.edge()).is_some_and(|mark| if mark.half_edge == h { mark.t < 0.5 } else { mark.t > 0.5 })
+    };
+    [mark.half_edge, mark.half_edge.mate()].map(|h| {
+        let v = mesh.source(h);
+        if mark.breadth.is_some() || !near(h) || mesh.is_boundary_vertex(v) || mesh.vertex_sharpness(v) > 0.0
+        {
+            return 0.0;
+        }
+        let mut shortest = f64::INFINITY;
+        for out in mesh.outgoing(v) {
+            let beside = out == mesh.next(h.mate()) || h == mesh.next(out.mate());
+            if mesh.edge_sharpness(out) > 0.0 || (out != h && near(out) && !beside) {
+                return 0.0;
+            }
+            shortest = shortest.min(mesh.edge_length(out));
+        }
+        let others = mesh.outgoing(v).filter(|&out| out != h && near(out)).count();
+        if others > 1 { 0.0 } else { LONGEST_MOVE * shortest }
+    })
+}
+
+/// Places along the marked edge, increasing, for a limit surface `width` wide across the feature; without a
+/// width the lines are spread over the edge, a single one lies at the mark. They lie in (0, 1) unless the ends of the edge
+/// have the `freedom` to make room.
 ///
 /// # Errors
-/// [`WidthError`] when the lines would come closer than 1 % of the edge to each other or to the edge's ends.
+/// [`WidthError`] when the lines would come closer than 1 % of the edge to each other or to an end that cannot make room.
 pub(super) fn cuts(
     mesh: &Mesh,
     mark: &Mark,
     section: &Section,
     width: Option<f64>,
+    freedom: [f64; 2],
 ) -> Result<Vec<f64>, WidthError> {
     let h = mark.half_edge;
     let length = mesh.edge_length(h);
@@ -96,7 +129,11 @@ pub(super) fn cuts(
         None => (length, crossing_sine(mesh, mark)),
     };
     let lowest = CLEARANCE * length / section.least_gap();
-    let highest = (mark.t.min(1.0 - mark.t) - CLEARANCE) * length;
+    let most = |t: f64, freedom: f64| {
+        let unmoved = (t - CLEARANCE) * length;
+        if freedom > 0.0 { unmoved.max((t * length + freedom) / (1.0 + ROOM)) } else { unmoved }
+    };
+    let highest = most(mark.t, freedom[0]).min(most(1.0 - mark.t, freedom[1]));
     let half = section.half_width(width / sine, length, mark.t);
     if !(length > 0.0 && half >= lowest && half <= highest) {
         return Err(WidthError {

@@ -4,15 +4,15 @@
 use super::clock::Clock;
 use super::curve::{Track, trace};
 use super::enclosed::enclosed;
-use super::place::{crossing_sine, cuts};
+use super::place::{crossing_sine, cuts, freedom};
 use super::report::Counts;
 use super::request::{Feature, feature_of};
 use super::section::Section;
 use super::{FeatureError, Options, Request};
 use crate::mark::{Mark, Selection, orient, parity};
-use crate::mesh::{Mesh, VertexId};
+use crate::mesh::{HalfEdgeId, Mesh, VertexId};
 use glam::DVec3;
-use rustc_hash::FxHashSet;
+use rustc_hash::{FxHashMap, FxHashSet};
 
 /// Distance that vertices keep from a curve, in half widths of the control band: a third of a half width beyond the rim
 /// (docs/linear-features.md, section 6).
@@ -40,6 +40,8 @@ pub(super) struct Run<'a> {
     pub(super) asked: Vec<Vec<f64>>,
     /// The straight band that these make at each mark.
     sections: Vec<Section>,
+    /// How far the ends of each marked edge may make room, in model units.
+    freedom: Vec<[f64; 2]>,
     /// Vertices inside of closed loops and their features.
     pub(super) inside: Vec<(VertexId, usize)>,
     /// Curves on the surface, and the curve that each mark lies on.
@@ -47,6 +49,8 @@ pub(super) struct Run<'a> {
     pub(super) track_of: Vec<Option<usize>>,
     /// Vertices that lie in the way of bands along curves, and where they go.
     pub(super) moved: Vec<(VertexId, DVec3)>,
+    /// Sides of edges behind which a curve ends, and how far into the face.
+    pub(super) ends: Vec<(HalfEdgeId, f64)>,
     pub(super) before: Counts,
     /// Ids below these were there before.
     pub(super) first_vertex: usize,
@@ -88,10 +92,12 @@ impl<'a> Run<'a> {
             feature_of: Vec::new(),
             asked: Vec::new(),
             sections: Vec::new(),
+            freedom: Vec::new(),
             inside: Vec::new(),
             tracks: Vec::new(),
             track_of: vec![None; selection.marks.len()],
             moved: Vec::new(),
+            ends: Vec::new(),
             before: Counts { vertices, edges, faces },
             first_vertex: mesh.vertex_bound(),
             first_face: mesh.face_bound(),
@@ -137,6 +143,7 @@ impl<'a> Run<'a> {
                 self.marks.push(mark);
             }
             self.moved.extend(traced.moved);
+            self.ends.extend(traced.ends);
             self.tracks.push(traced.track);
         }
         Ok(())
@@ -169,6 +176,9 @@ impl<'a> Run<'a> {
             self.sections.push(Section::new(&feature.profile, &values));
             self.asked.push(values);
         }
+        let by_edge: FxHashMap<u32, &Mark> =
+            self.marks.iter().map(|mark| (mark.half_edge.edge(), mark)).collect();
+        self.freedom = self.marks.iter().map(|mark| freedom(mesh, mark, &by_edge)).collect();
         // Refuse widths that do not fit before anything is done.
         for (mark, values) in self.asked.iter().enumerate() {
             self.cuts(mesh, mark, values)?;
@@ -185,7 +195,7 @@ impl<'a> Run<'a> {
         values: &[f64],
     ) -> Result<Vec<f64>, super::WidthError> {
         let width = self.features[self.feature_of[mark]].profile.width().map(|p| values[p]);
-        cuts(mesh, &self.marks[mark], &self.sections[mark], width)
+        cuts(mesh, &self.marks[mark], &self.sections[mark], width, self.freedom[mark])
     }
 
     /// Number of lines that cross the edge of mark number `mark`.

@@ -62,6 +62,9 @@ pub struct FeatureReport {
     pub marks: usize,
     /// How far it is off the curves it follows; `None` where it follows edges.
     pub off_curve: Option<OffCurve>,
+    /// Where curves end inside the surface: how far, in the surface, the tips of the feature (where half of the depth is
+    /// left) are from the ends of the curves, in model units.
+    pub off_ends: Vec<f64>,
     /// Its dimensions, asked and reached.
     pub dimensions: Vec<Dimension>,
 }
@@ -261,6 +264,10 @@ impl fmt::Display for Report {
             if let Some(off) = feature.off_curve {
                 let (max, rms) = (significant(off.max), significant(off.rms));
                 writeln!(f, "{}: off its curve by {max} at most, {rms} rms", feature.kind)?;
+            }
+            if !feature.off_ends.is_empty() {
+                let list: Vec<String> = feature.off_ends.iter().map(|&x| significant(x)).collect();
+                writeln!(f, "{}: ends {} from the ends of its curve", feature.kind, list.join(", "))?;
             }
         }
         writeln!(

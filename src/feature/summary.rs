@@ -2,6 +2,7 @@
 
 use super::aftermath::{affected_faces, feature_edges, settle, without_texcoords};
 use super::curve::off_curve;
+use super::displace::LineVertex;
 use super::linear::Pass;
 use super::prepare::Run;
 use super::profile::Unit;
@@ -9,6 +10,7 @@ use super::report::{Counts, Dimension, FeatureReport, OffCurve, Report, Warning}
 use super::{FeatureError, deviation};
 use crate::job::Job;
 use crate::mesh::{Mesh, VertexId};
+use crate::subdivision::limit_position;
 use glam::DVec3;
 use std::collections::BTreeMap;
 
@@ -100,6 +102,7 @@ impl Run<'_> {
                 kind: feature.kind.clone(),
                 profile: feature.profile.name.clone(),
                 off_curve: self.off_curve(mesh, index, pass),
+                off_ends: self.off_ends(mesh, index, pass),
                 marks: self.feature_of.iter().filter(|&&f| f == index).count(),
                 dimensions: (0..feature.profile.parameters.len())
                     .filter(|&p| feature.profile.parameters[p].unit == Unit::Length)
@@ -118,6 +121,25 @@ impl Run<'_> {
         let middle = |feature: usize| self.features[feature].profile.middle();
         let [max, rms] = off_curve(mesh, &pass.lines, &self.tracks, track_of, middle)?;
         Some(OffCurve { max, rms })
+    }
+
+    /// Distance between the tips of a feature and the ends of the curves it follows.
+    fn off_ends(&self, mesh: &Mesh, feature: usize, pass: &Pass) -> Vec<f64> {
+        let middle = self.features[feature].profile.middle();
+        let on_middle = |v: &&LineVertex| v.feature == feature && Some(v.line) == middle;
+        let find = |v: VertexId| pass.lines.binary_search_by_key(&v, |entry| entry.vertex).ok();
+        let middles = |v: VertexId| -> Vec<&LineVertex> {
+            let around = mesh.outgoing(v).filter_map(|h| pass.lines.get(find(mesh.target(h))?));
+            around.filter(on_middle).collect()
+        };
+        // A tip lies inside of a face, at the end of the middle line.
+        let tips = pass.lines.iter().filter(on_middle).filter(|v| v.mark.is_none() && v.cross.is_none());
+        tips.filter_map(|tip| {
+            let [last] = middles(tip.vertex)[..] else { return None };
+            let track = self.track_of.get(last.mark?).copied().flatten()?;
+            self.tracks.get(track)?.off_end(limit_position(mesh, tip.vertex))
+        })
+        .collect()
     }
 
     fn dimension(&self, feature: usize, parameter: usize, pass: &Pass) -> Dimension {

@@ -83,8 +83,8 @@ impl<'m> Case<'m> {
             ..Options::default()
         };
         let mut marks: Vec<Mark> = marks.into_values().collect();
-        let start = random.below(marks.len().max(1));
-        marks.rotate_left(start.min(marks.len()));
+        let count = marks.len();
+        marks.rotate_left(random.below(count.max(1)).min(count));
         marks.truncate(MOST_MARKS);
         Some(Self {
             model,
@@ -166,17 +166,22 @@ impl fmt::Display for Case<'_> {
 fn some_curve(mesh: &Mesh, random: &mut Random) -> Option<Curve> {
     let mut face = random.pick(&mesh.faces().collect::<Vec<_>>());
     let mut points = Vec::new();
+    // Where a curve touches itself it is not clear which stretch is the nearest.
+    let mut seen = vec![face];
     for _ in 0..2 + random.below(5) {
         let [u, v] = [0.1, 0.1].map(|low| random.between(low, 0.9));
         points.push(evaluate(mesh, face, 0, u, v)?.position);
         let sides: Vec<_> = mesh.face_half_edges(face).map(|h| mesh.face(h.mate())).collect();
         let next = random.pick(&sides);
-        if !next.is_boundary() {
-            face = next;
+        if next.is_boundary() || seen.contains(&next) {
+            break;
         }
+        face = next;
+        seen.push(face);
     }
+    (points.len() > 1).then_some(())?;
     Some(Curve {
-        closed: points.len() > 2 && random.once_in(4),
+        closed: points.len() > 3 && random.once_in(4),
         points,
         course: random.pick(&[Course::Polyline, Course::Spline]),
         kind: random.pick(&["red", "red", "ridge", "dent"]).to_owned(),

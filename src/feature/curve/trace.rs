@@ -3,7 +3,7 @@
 use super::track::{Beside, Track};
 use crate::feature::FeatureError;
 use crate::mark::{Curve, Mark};
-use crate::mesh::{FaceId, Mesh, VertexId};
+use crate::mesh::{FaceId, HalfEdgeId, Mesh, VertexId};
 use crate::subdivision::limit_position;
 use crate::surface::{ClosestOptions, LimitSurface};
 use glam::DVec3;
@@ -20,6 +20,9 @@ pub(in super::super) struct Traced {
     pub(in super::super) marks: Vec<Mark>,
     /// Vertices that lie in the way of the band, and where they go.
     pub(in super::super) moved: Vec<(VertexId, DVec3)>,
+    /// Sides of crossed edges behind which the curve ends in a face, and how far in: a fraction of the way to the other
+    /// side of the face.
+    pub(in super::super) ends: Vec<(HalfEdgeId, f64)>,
     pub(in super::super) track: Track,
 }
 
@@ -63,9 +66,10 @@ pub(in super::super) fn trace(
     let mut beside: FxHashMap<VertexId, Beside> =
         vertices.iter().filter_map(|&v| Some((v, track.beside(limit_position(mesh, v))?))).collect();
     // Nearest first: whether a vertex can move depends on those that moved before, and not on its number.
-    vertices.retain(|v| beside.contains_key(v));
-    vertices.sort_by(|a, b| beside[a].distance.abs().total_cmp(&beside[b].distance.abs()));
-    let moved = make_room(mesh, &vertices, &mut beside, room(edge));
+    let mut nearest: Vec<(f64, VertexId)> =
+        vertices.iter().filter_map(|&v| Some((beside.get(&v)?.distance.abs(), v))).collect();
+    nearest.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let moved = make_room(mesh, nearest.into_iter().map(|entry| entry.1), &mut beside, room(edge));
 
     let mut marks: Vec<(f64, Mark)> = Vec::new();
     let mut seen: FxHashSet<u32> = FxHashSet::default();
@@ -86,11 +90,33 @@ pub(in super::super) fn trace(
     }
     // In the order in which the curve crosses them.
     marks.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let mut ends = Vec::new();
+    if let (Some((start, first)), Some((stop, last)), Some(length)) =
+        (marks.first(), marks.last(), track.open_length())
+    {
+        // The face of a mark's half-edge lies behind, that of its mate ahead.
+        let behind = (first.half_edge, first.t, *start);
+        let ahead = (last.half_edge.mate(), 1.0 - last.t, length - stop);
+        for (h, t, rest) in [behind, ahead] {
+            let depth = depth_of_face(mesh, h, t);
+            if !mesh.face(h).is_boundary() && depth > 0.0 {
+                ends.push((h, rest / depth));
+            }
+        }
+    }
     let marks: Vec<Mark> = marks.into_iter().map(|(_, mark)| mark).collect();
     if marks.is_empty() {
         return Err(error("it crosses no edge; it must reach from face to face"));
     }
-    Ok(Traced { marks, moved, track })
+    Ok(Traced { marks, moved, ends, track })
+}
+
+/// How far it is through the face of `h`, from the place `t` on `h` to the same place between the neighbours of its ends:
+/// the frame in which the rules place an end.
+fn depth_of_face(mesh: &Mesh, h: HalfEdgeId, t: f64) -> f64 {
+    let near = mesh.position(mesh.source(h)).lerp(mesh.position(mesh.target(h)), t);
+    let [left, right] = [mesh.source(mesh.prev(h)), mesh.target(mesh.next(h))].map(|v| mesh.position(v));
+    near.distance(left.lerp(right, t))
 }
 
 /// Faces whose control points come near the curve's bounding box.
@@ -122,13 +148,13 @@ fn mean_edge(mesh: &Mesh, faces: &[FaceId]) -> Option<f64> {
 /// boundary. Faces stay convex.
 fn make_room(
     mesh: &Mesh,
-    vertices: &[VertexId],
+    vertices: impl Iterator<Item = VertexId>,
     beside: &mut FxHashMap<VertexId, Beside>,
     room: f64,
 ) -> Vec<(VertexId, DVec3)> {
     let mut moved: FxHashMap<VertexId, DVec3> = FxHashMap::default();
     let mut order = Vec::new();
-    for &v in vertices {
+    for v in vertices {
         let Some(at) = beside.get_mut(&v) else { continue };
         if !at.inside || at.distance.abs() >= room {
             continue;

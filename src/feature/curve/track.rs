@@ -136,6 +136,22 @@ impl Track {
         })
     }
 
+    /// Length of a track that does not close.
+    pub(super) fn open_length(&self) -> Option<f64> {
+        (!self.closed).then_some(self.length)
+    }
+
+    /// Distance, in the surface, of `point` from the nearer end of an open track.
+    pub(in super::super) fn off_end(&self, point: DVec3) -> Option<f64> {
+        let last = self.points.len().checked_sub(1)?;
+        let distance = |i: usize| {
+            let (end, normal) = (self.points.get(i)?, self.normals.get(i)?);
+            let offset = point - *end;
+            Some((offset - *normal * offset.dot(*normal)).length())
+        };
+        (!self.closed).then(|| Some(distance(0)?.min(distance(last)?))).flatten()
+    }
+
     /// Length of the track between two places on it, the shorter way.
     pub(super) fn between(&self, a: f64, b: f64) -> f64 {
         let straight = (a - b).abs();
