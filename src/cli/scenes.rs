@@ -65,7 +65,7 @@ const SEAMS: &[&str] =
 
 const GROOVE: &[&str] = &["groove"];
 
-pub const SCENES: [Scene; 15] = [
+pub const SCENES: [Scene; 16] = [
     Scene {
         name: "ring",
         title: "A groove round a shell chair (ring:3,331; figures 5, 6b)",
@@ -171,6 +171,15 @@ pub const SCENES: [Scene; 15] = [
         features: GROOVE,
         marks: &[MIDDLE, HALF_ACROSS[0], HALF_ACROSS[1]],
         set: SEAM,
+        method: Method::Solve,
+        view: Side::Right,
+    },
+    Scene {
+        name: "tee_as_printed",
+        title: "The same by the paper's Rule 6: the seam ends at a dam",
+        features: GROOVE,
+        marks: &[MIDDLE, HALF_ACROSS[0], HALF_ACROSS[1]],
+        set: &["width=1.2", "depth=0.4", "paper_tees=1"],
         method: Method::Solve,
         view: Side::Right,
     },
