@@ -19,6 +19,7 @@ mod prepare;
 mod profile;
 mod profile_file;
 mod report;
+mod report_text;
 mod request;
 mod section;
 mod settings;
