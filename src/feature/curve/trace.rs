@@ -76,15 +76,24 @@ pub(in super::super) fn trace(
     for h in vertices.iter().flat_map(|&v| mesh.outgoing(v)) {
         let (Some(a), Some(b)) = (beside.get(&mesh.source(h)), beside.get(&mesh.target(h))) else { continue };
         // From the right of the curve to its left: all marks count in the same direction.
-        let crossed = a.distance < 0.0 && b.distance > 0.0 && a.inside && b.inside;
-        if !(crossed && seen.insert(h.edge())) {
+        if !(a.distance < 0.0 && b.distance > 0.0) {
             continue;
         }
         let breadth = b.distance - a.distance;
+        let t = -a.distance / breadth;
+        if !(a.inside && b.inside) {
+            // Beside an end of the curve: what counts is where the edge is crossed.
+            let [from, to] = [h, h.mate()].map(|h| limit_position(mesh, mesh.source(h)));
+            if (!a.inside && !b.inside) || !track.beside(from.lerp(to, t)).is_some_and(|at| at.inside) {
+                continue;
+            }
+        }
+        if !seen.insert(h.edge()) {
+            continue;
+        }
         if track.between(a.along, b.along) > SAME_STRETCH * breadth.max(mesh.edge_length(h)) {
             continue;
         }
-        let t = -a.distance / breadth;
         let mark = Mark { half_edge: h, t, kind: curve.kind.clone(), breadth: Some(breadth) };
         marks.push((a.along + t * (b.along - a.along), mark));
     }

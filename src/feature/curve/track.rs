@@ -126,14 +126,10 @@ impl Track {
         let normal = self.normals[i].lerp(self.normals[j], t).normalize_or_zero();
         let offset = point - a.lerp(b, t);
         let in_surface = offset - normal * offset.dot(normal);
-        let side = if offset.dot(left) < 0.0 { -1.0 } else { 1.0 };
-        Some(Beside {
-            distance: side * in_surface.length(),
-            along: self.lengths[i] + t * a.distance(b),
-            left,
-            normal,
-            inside,
-        })
+        // Beyond an end the curve counts as going on straight.
+        let across = offset.dot(left);
+        let distance = if inside { across.signum() * in_surface.length() } else { across };
+        Some(Beside { distance, along: self.lengths[i] + t * a.distance(b), left, normal, inside })
     }
 
     /// Length of a track that does not close.
