@@ -165,6 +165,12 @@ class Files(unittest.TestCase):
         self.assertEqual((place.file, place.line), ("bad.obj", 2))
         self.assertIn("bad.obj:2", str(place))
 
+    def test_limits(self):
+        with self.assertRaises(welt.Error):
+            welt.Mesh.read(CHAIR, limits={"max_faces": 100})
+        with self.assertRaisesRegex(welt.ArgumentError, "'max_size' is no limit: there are max_vertices, max_faces"):
+            welt.Mesh.read(CHAIR, limits={"max_size": 100})
+
     def test_repair(self):
         book = b"v 0 0 0\nv 0 1 0\nv 1 0 0\nv -1 0 0\nv 0 0 1\nf 1 2 3\nf 2 1 4\nf 1 2 5\n"
         with self.assertRaises(welt.MeshError) as caught:

@@ -39,10 +39,17 @@ def same(first: int, second: int, rule: str) -> None:
         raise ArgumentError(f"there must be {rule}, not {first} and {second}")
 
 
-def importing(repair: bool, weld: float) -> Any:
+def importing(repair: bool, weld: float, limits: Mapping[str, int]) -> Any:
     options = ImportOptions()
     raw("welt_import_options_init", options, ctypes.sizeof(options))
     options.repair, options.weld = int(repair), weld
+    known = [field[0] for field in ImportOptions._fields_ if field[0].startswith("max_")]
+    for name, most in limits.items():
+        if name not in known:
+            raise ArgumentError(f"{name!r} is no limit: there are {', '.join(known)}")
+        if not 0 <= most < 1 << 64:
+            raise ArgumentError(f"{name} must be from 0 to 2^64 - 1, not {most}")
+        setattr(options, name, most)
     return ctypes.byref(options)
 
 

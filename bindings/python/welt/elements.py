@@ -5,7 +5,7 @@ from __future__ import annotations
 import ctypes
 import os
 import weakref
-from typing import Any, Dict, Iterable, List, Sequence, Tuple, TypeVar, Union
+from typing import Any, Dict, Iterable, List, Mapping, Sequence, Tuple, TypeVar, Union
 
 from . import _options as options
 from . import arrays
@@ -47,35 +47,48 @@ class Elements(Handle):
     # --- Files
 
     @classmethod
-    def read(cls: type[E], path: Union[str, os.PathLike[str]], *, repair: bool = False, weld: float = -1.0) -> E:
+    def read(
+        cls: type[E],
+        path: Union[str, os.PathLike[str]],
+        *,
+        repair: bool = False,
+        weld: float = -1.0,
+        limits: Mapping[str, int] = {},
+    ) -> E:
         """Reads a mesh from a file, OBJ or PLY by its extension.
 
         repair: split apart, turn round or remove what a mesh cannot hold, instead of refusing the file.
         weld: merge vertices that are no further apart than this distance, in the unit of the file; 0 merges equal ones, a
             negative number none.
+        limits: how much a file may hold: max_vertices, max_faces, max_face_vertices, max_vertex_faces.
 
         Raises FileError, ParseError (places have the line) and MeshError (places have defects and lines). What was ignored
         and repaired stands in `report`.
         """
         name = os.fspath(path).encode()
-        return cls._imported("welt_mesh_import_file", name, len(name), options.importing(repair, weld))
+        return cls._imported("welt_mesh_import_file", name, len(name), options.importing(repair, weld, limits))
 
     @classmethod
     def read_bytes(
-        cls: type[E], content: bytes, format: str = "obj", *, name: str = "memory", repair: bool = False, weld: float = -1.0
+        cls: type[E],
+        content: bytes,
+        format: str = "obj",
+        *,
+        name: str = "memory",
+        repair: bool = False,
+        weld: float = -1.0,
+        limits: Mapping[str, int] = {},
     ) -> E:
         """Reads a mesh from the content of a file.
 
         format: "obj" or "ply".
         name: stands for the file in messages.
-        repair, weld: as for `read`.
+        repair, weld, limits: as for `read`.
         """
         label = name.encode()
         data = ctypes.cast(ctypes.c_char_p(content), ctypes.POINTER(ctypes.c_uint8))
-        code = options.constant("WELT_FORMAT_", format)
-        return cls._imported(
-            "welt_mesh_import_memory", label, len(label), code, data, len(content), options.importing(repair, weld)
-        )
+        code, chosen = options.constant("WELT_FORMAT_", format), options.importing(repair, weld, limits)
+        return cls._imported("welt_mesh_import_memory", label, len(label), code, data, len(content), chosen)
 
     @classmethod
     def _imported(cls: type[E], name: str, *arguments: Any) -> E:

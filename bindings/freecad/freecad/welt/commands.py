@@ -87,6 +87,22 @@ class ImportCage(Command):
         return obj
 
 
+class MoveVertices(Command):
+    name = "Move"
+    menu = QT_TRANSLATE_NOOP("Welt", "Move vertices")
+    tooltip = QT_TRANSLATE_NOOP("Welt", "Move the selected vertices of a cage; features follow")
+
+    def run(self, document, selection):
+        from .move import MovePanel
+
+        base, names = chosen.chosen_elements(selection)
+        if base.Proxy.kind != "cage":
+            text = translate("Welt", "The vertices of {} follow from its cage: select vertices of the cage").format(base.Label)
+            raise Problem(text)
+        FreeCADGui.Control.showDialog(MovePanel(base, names))
+        return True
+
+
 class Mark(Command):
     """Marks of one propagation."""
 
@@ -141,7 +157,7 @@ class MakeFeature(Command):
 
     def run(self, document, selection):
         from .feature import make_feature
-        from .panel import Panel
+        from .panel import FeaturePanel
 
         library()
         marks = chosen.marks_of(selection)
@@ -156,7 +172,7 @@ class MakeFeature(Command):
             limit.ViewObject.Transparency = 0
         for hidden in marks + [marks[0].Elements[0], obj]:
             hidden.ViewObject.Visibility = False
-        FreeCADGui.Control.showDialog(Panel(obj))
+        FreeCADGui.Control.showDialog(FeaturePanel(obj))
         return True
 
 
@@ -200,7 +216,7 @@ class MakeSolid(Command):
 FEATURES = ("Groove", "Ridge", "Piping", "Dent", "Step", "Bead", "Loop", "Rules")
 MARKS = ("Edges", "Ring", "Path", "Loop")
 TOOLBARS = {
-    QT_TRANSLATE_NOOP("Workbench", "Welt cage"): ["Welt_Cage"] + [f"Welt_Mark{name}" for name in MARKS],
+    QT_TRANSLATE_NOOP("Workbench", "Welt cage"): ["Welt_Cage", "Welt_Move"] + [f"Welt_Mark{name}" for name in MARKS],
     QT_TRANSLATE_NOOP("Workbench", "Welt features"): [f"Welt_{name}" for name in FEATURES],
     QT_TRANSLATE_NOOP("Workbench", "Welt surface"): ["Welt_Limit", "Welt_Deviation", "Welt_Solid"],
 }
@@ -208,7 +224,7 @@ TOOLBARS = {
 
 def register():
     """Makes the commands known to FreeCAD."""
-    commands = [ImportCage(), MakeLimit(), MakeDeviation(), MakeSolid()]
+    commands = [ImportCage(), MoveVertices(), MakeLimit(), MakeDeviation(), MakeSolid()]
     commands += [Mark(name) for name in MARKS] + [MakeFeature(name.lower()) for name in FEATURES]
     for command in commands:
         FreeCADGui.addCommand("Welt_" + command.name, command)

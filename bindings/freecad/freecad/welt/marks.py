@@ -65,19 +65,15 @@ def base_of(marks):
 
 
 def elements(obj, mesh):
-    """The vertices of each marked element: one of a vertex, two of an edge, the lesser first."""
+    """The vertices of each marked element."""
     names = obj.Elements[1] if obj.Elements else ()
     if not any(names):
         raise Problem(translate("Welt", "Nothing is marked: select edges of the cage and use Mark again"))
-    edges, found = mesh.edges.tolist(), []
-    for name in names:
-        number = int(name[4:]) if name.startswith("Edge") else int(name[6:]) if name.startswith("Vertex") else 0
-        if number < 1:
-            raise Problem(translate("Welt", "{} is no edge or vertex: select edges of the cage and use Mark again").format(name))
-        whole = edges if name.startswith("Edge") else range(mesh.vertex_count)
-        if number > len(whole):
+    found = []
+    for name, ends in vertices_of(mesh, names):
+        if ends is None:
             raise stale(obj, name)
-        found.append(tuple(sorted(edges[number - 1])) if whole is edges else (number - 1,))
+        found.append(ends)
     known = [",".join(map(str, ends)) for ends in found]
     if not obj.Known:
         obj.Known = known
@@ -85,6 +81,21 @@ def elements(obj, mesh):
         if before != now:
             raise stale(obj, name)
     return found
+
+
+def vertices_of(mesh, names):
+    """The vertices of each element: one of a vertex, two of an edge, the lesser first, None where the mesh has none such."""
+    edges = mesh.edges.tolist()
+    for name in names:
+        kind, number = ("Edge", name[4:]) if name.startswith("Edge") else ("Vertex", name[6:])
+        if not name.startswith(kind) or not number.isdigit():
+            text = translate("Welt", "{} is no edge or vertex: select edges of the cage and use Mark again")
+            raise Problem(text.format(name))
+        index = int(number) - 1
+        if not 0 <= index < (len(edges) if kind == "Edge" else mesh.vertex_count):
+            yield name, None
+        else:
+            yield name, tuple(sorted(edges[index])) if kind == "Edge" else (index,)
 
 
 def stale(obj, name):

@@ -1,4 +1,4 @@
-"""The task panel of a feature: its parameters as the library declares them."""
+"""Task panels: what an object is told while the document shows the result."""
 
 import FreeCAD
 import FreeCADGui
@@ -14,20 +14,17 @@ translate = FreeCAD.Qt.translate
 DELAY = 300
 
 
-class Panel:
-    """Edits a feature while the document shows the result; Cancel leaves everything as it was."""
+class TaskPanel:
+    """A form that changes an object while the document shows the result; Cancel leaves everything as it was."""
 
-    def __init__(self, obj):
+    def __init__(self, obj, title, picture):
         self.object = obj
         self.form = QtGui.QWidget()
         self.form.setObjectName("WeltPanel")
-        self.form.setWindowTitle(obj.Label)
-        self.form.setWindowIcon(QtGui.QIcon(icon(obj.Feature.title())))
+        self.form.setWindowTitle(title)
+        self.form.setWindowIcon(QtGui.QIcon(icon(picture)))
         layout = QtGui.QFormLayout(self.form)
-        for parameter in parameters(obj.Feature, obj.Rules):
-            self._row(layout, parameter)
-        for name in ("Fit", "Parity"):
-            self._choice(layout, name)
+        self.fill(layout)
         self.message = QtGui.QLabel()
         self.message.setWordWrap(True)
         layout.addRow(self.message)
@@ -36,6 +33,65 @@ class Panel:
         self.timer.setInterval(DELAY)
         self.timer.timeout.connect(self.update)
         self.update()
+
+    def number(self, value):
+        box = QtGui.QDoubleSpinBox()
+        box.setDecimals(3)
+        box.setRange(-1e6, 1e6)
+        box.setValue(value)
+        return box
+
+    def update(self):
+        """Computes the document and says how it went."""
+        self.object.Document.recompute()
+        broken = [obj for obj in (self.object, *self.object.InListRecursive) if not obj.isValid()]
+        self.message.setText(sentence(broken[0].getStatusString()) if broken else "\n".join(self.notes()))
+
+    def notes(self):
+        """What is said where all is well."""
+        return []
+
+    def getStandardButtons(self):
+        buttons = QtGui.QDialogButtonBox.Ok | QtGui.QDialogButtonBox.Cancel
+        # Newer versions of Qt for Python have enumerations here.
+        return buttons.value if hasattr(buttons, "value") else int(buttons)
+
+    def accept(self):
+        self.timer.stop()
+        self.update()
+        if not self.object.isValid():
+            # The panel stays, with the sentence that says why.
+            return False
+        self.object.Document.commitTransaction()
+        FreeCADGui.ActiveDocument.resetEdit()
+        FreeCADGui.Control.closeDialog()
+        return True
+
+    def reject(self):
+        self.timer.stop()
+        document = self.object.Document
+        document.abortTransaction()
+        FreeCADGui.ActiveDocument.resetEdit()
+        FreeCADGui.Control.closeDialog()
+        document.recompute()
+        return True
+
+
+class FeaturePanel(TaskPanel):
+    """The parameters of a feature."""
+
+    def __init__(self, obj):
+        super().__init__(obj, obj.Label, obj.Feature.title())
+
+    def fill(self, layout):
+        obj = self.object
+        for parameter in parameters(obj.Feature, obj.Rules):
+            self._row(layout, parameter)
+        for name in ("Fit", "Parity"):
+            self._choice(layout, name)
+
+    def notes(self):
+        return self.object.Warnings
 
     def _row(self, layout, parameter):
         obj, name = self.object, property_name(parameter)
@@ -48,17 +104,10 @@ class Panel:
         elif name + "Percent" in obj.PropertiesList:
             box = self._length(name)
         else:
-            box = self._number(float(getattr(getattr(obj, name), "Value", getattr(obj, name))))
+            box = self.number(float(getattr(getattr(obj, name), "Value", getattr(obj, name))))
             box.valueChanged.connect(lambda value: self.change(name, value))
         box.setToolTip(parameter["help"])
         layout.addRow(label, box)
-
-    def _number(self, value):
-        box = QtGui.QDoubleSpinBox()
-        box.setDecimals(3)
-        box.setRange(-1e6, 1e6)
-        box.setValue(value)
-        return box
 
     def _length(self, name):
         """A length in the units of the document, or a part of the marked edges' length."""
@@ -66,7 +115,7 @@ class Panel:
         layout = QtGui.QHBoxLayout(row)
         layout.setContentsMargins(0, 0, 0, 0)
         length = getattr(obj, name).Value
-        box, unit = self._number(length or getattr(obj, name + "Percent")), QtGui.QComboBox()
+        box, unit = self.number(length or getattr(obj, name + "Percent")), QtGui.QComboBox()
         unit.addItems(["mm", translate("Welt", "% of edge")])
         unit.setCurrentIndex(0 if length else 1)
         # The panel of FreeCAD is narrow at first.
@@ -96,37 +145,3 @@ class Panel:
     def change(self, name, value):
         setattr(self.object, name, value)
         self.timer.start()
-
-    def update(self):
-        """Computes the document and says how it went."""
-        obj = self.object
-        obj.Document.recompute()
-        if not obj.isValid():
-            self.message.setText(sentence(obj.getStatusString()))
-        else:
-            self.message.setText("\n".join(obj.Warnings))
-
-    def getStandardButtons(self):
-        buttons = QtGui.QDialogButtonBox.Ok | QtGui.QDialogButtonBox.Cancel
-        # Newer versions of Qt for Python have enumerations here.
-        return buttons.value if hasattr(buttons, "value") else int(buttons)
-
-    def accept(self):
-        self.timer.stop()
-        self.update()
-        if not self.object.isValid():
-            # The panel stays, with the sentence that says why.
-            return False
-        self.object.Document.commitTransaction()
-        FreeCADGui.ActiveDocument.resetEdit()
-        FreeCADGui.Control.closeDialog()
-        return True
-
-    def reject(self):
-        self.timer.stop()
-        document = self.object.Document
-        document.abortTransaction()
-        FreeCADGui.ActiveDocument.resetEdit()
-        FreeCADGui.Control.closeDialog()
-        document.recompute()
-        return True
