@@ -26,7 +26,8 @@ fn declarations(header: &str) -> Vec<String> {
     let mut found = Vec::new();
     let mut statement = String::new();
     let mut depth = 0;
-    for line in code.lines().map(str::trim).filter(|line| !line.is_empty()) {
+    // The braces of extern "C" are about C++ only.
+    for line in code.lines().map(str::trim).filter(|line| !["", "extern \"C\" {", "}"].contains(line)) {
         if line.starts_with('#') {
             if let Some(constant) = line.strip_prefix("#define WELT_") {
                 found.push(format!("constant WELT_{constant}"));
@@ -147,6 +148,8 @@ fn structs_have_the_recorded_size() {
         ("welt_batch_options", size_of::<ffi::WeltBatchOptions>()),
         ("welt_feature_options", size_of::<ffi::WeltFeatureOptions>()),
         ("welt_surface_point", size_of::<ffi::WeltSurfacePoint>()),
+        ("welt_patch_options", size_of::<ffi::WeltPatchOptions>()),
+        ("welt_patch", size_of::<ffi::WeltPatch>()),
     ] {
         assert!(lines.contains(&format!("size {name}: {size}")), "{name} has {size} bytes");
     }
