@@ -42,6 +42,10 @@ const MESSAGES: [(&str, &str); 17] = [
         "line 15: face 0 has 1 vertices; a face needs at least 3; line 18: face 1 has 2",
     ),
     ("as_box_longline.obj", "face 0 names vertex 0 twice"),
+    (
+        "gen_long_line_ngon_50000.obj",
+        "a face with more than 1024 vertices; split the face, or raise the limit",
+    ),
     ("gen_cube_one_flipped.obj", "lines 10, 12: faces 0, 2 run along edge 0-1 in the same direction"),
     ("gen_moebius_quads.obj", "run along edge"),
     ("gen_two_cubes_vertex.obj", "line 9: 2 fans of faces meet in vertex 7 without sharing an edge"),
