@@ -121,12 +121,14 @@ fn random_marks_give_valid_meshes() {
     println!("{count} cases: {fired:?}");
     if count > 0 {
         assert!(count >= 400, "only {count} cases");
-        // Every rule had its turn.
+        // Every rule had its turn, but for those that make room where lines come too near to a vertex, which these marks
+        // do not, and for the paper's tees, which a parameter asks for; `tests/properties` has both.
+        let elsewhere = ["MoveAlong", "MoveAcross", "Adjust", "MakeRoom", "TeeBesideDiamond", "TeeDiamond"];
         let idle: Vec<&str> = rules
             .rules()
             .iter()
             .map(|rule| rule.name.as_str())
-            .filter(|name| !fired.contains_key(*name))
+            .filter(|name| !fired.contains_key(*name) && !elsewhere.contains(name))
             .collect();
         assert!(idle.is_empty(), "never applied: {idle:?}");
     }
