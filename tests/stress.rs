@@ -20,7 +20,7 @@ fn message(text: &str) -> String {
 const MEND: &str = "mend these in the modeller, or import with repair";
 
 /// Files of the collection that are refused, with a part of the message.
-const MESSAGES: [(&str, &str); 17] = [
+const MESSAGES: [(&str, &str); 18] = [
     (
         "gen_bad_index_1e19.obj",
         ":9:9: a face names vertex 10000000000000000000, but the file has only 8 vertices",
