@@ -43,7 +43,7 @@ const MESSAGES: [(&str, &str); 18] = [
     ),
     ("as_box_longline.obj", "face 0 names vertex 0 twice"),
     (
-        "gen_long_line_ngon_50000.obj",
+        "gen_long_line_ngon_50000.obj.gz",
         "a face with more than 1024 vertices; split the face, or raise the limit",
     ),
     ("gen_cube_one_flipped.obj", "lines 10, 12: faces 0, 2 run along edge 0-1 in the same direction"),
