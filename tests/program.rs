@@ -277,6 +277,13 @@ fn bad_usage_ends_with_2() {
     folder.welt(&["apply", "sheet.obj", "-o", "out.obj", "--mark", "ring:1,2"]).fails(2, &["--feature"]);
     folder.groove(&["--mark", "ring:1,2", "--optimise", "best"]).fails(2, &["none, loop, solve"]);
     folder.groove(&["--mark", "ring:1,2", "--report", "-"]).fails(2, &["--json"]);
+    for twice in [["--report", "sheet.obj"], ["--trace", "./sheet.obj"], ["--report", "out.obj"]] {
+        let before = folder.read("sheet.obj");
+        folder
+            .groove(&[&["--mark", "ring:1,2"], &twice[..]].concat())
+            .fails(2, &["named twice", "file of its own"]);
+        assert_eq!(folder.read("sheet.obj"), before);
+    }
     folder.welt(&["limit", "sheet.obj", "-o", "out.obj", "--level", "11"]).fails(2, &["11", "0..=10"]);
     folder.welt(&["deviation", "sheet.obj", "sheet.obj", "--samples", "0"]).fails(2, &["1..=64"]);
     assert_eq!(

@@ -105,6 +105,20 @@ fn rules_that_may_never_end() {
             "1:6 rule A may never end: its action changes nothing that its pattern looks at, so it matches at the same place again [A]",
         ],
     );
+    // What is taken off another element than the one that the pattern asks about does not end it.
+    for text in [
+        "input t \"h\" rule A { e(t) mate> m } action { m \"t\" attrdel }",
+        "input t \"h\" rule A { e(t) face> f } action { f \"t\" attrdel }",
+        "input t \"h\" rule A { e(t) source> v } action { v dup \"t\" attrdel pop }",
+    ] {
+        warned(
+            text,
+            &[
+                "1:18 rule A may never end: its action changes nothing that its pattern looks at, so it matches at the same place again [A]",
+            ],
+        );
+    }
+    warned("input t \"h\" rule A { e(t) mate> m } action { m edgemate \"t\" attrdel }", &[]);
     warned("rule A { e } not { e(x) } action { e \"x\" 1 attrset }", &[]);
     warned("rule A { e } where { e facedegree 5 lt } action { e dup vertexCW e vertexpos makeEV pop }", &[]);
     warned(

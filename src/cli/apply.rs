@@ -7,6 +7,7 @@ use super::files;
 use super::output::{print, tell};
 use super::progress::watch;
 use std::io::Write;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::sync::Arc;
 use welt::feature::{Options, ProfileError, Request, RequestError};
@@ -73,8 +74,18 @@ fn check_outputs(arguments: &Apply) -> Result<(), Failure> {
         )));
     }
     files::check_mesh_output(&arguments.output)?;
-    let trace = arguments.trace.as_deref();
-    [report, figure, trace].into_iter().flatten().try_for_each(files::check_output)
+    let beside: Vec<&Path> = [report, figure, arguments.trace.as_deref()].into_iter().flatten().collect();
+    beside.iter().try_for_each(|path| files::check_output(path))?;
+    // One would overwrite the other. The mesh may take the place of the mesh that is read.
+    let others = [&arguments.output, &arguments.input].map(PathBuf::as_path);
+    let others = others.into_iter().chain(arguments.replay.as_deref());
+    for (i, path) in beside.iter().enumerate() {
+        if others.clone().chain(beside[..i].iter().copied()).any(|other| files::are_same(path, other)) {
+            let path = path.display();
+            return Err(Failure::usage(format!("{path} is named twice; give each output a file of its own")));
+        }
+    }
+    Ok(())
 }
 
 fn tracer(arguments: &Apply) -> Result<Option<Arc<Tracer>>, Failure> {

@@ -5,18 +5,18 @@ use super::error::Failure;
 use super::figure::{View, draw, limit_picture};
 use super::files;
 use super::output::print;
+use super::rules;
 use super::scenes::SCENES;
 use glam::DVec3;
 use std::io::Write;
 use std::process::ExitCode;
 use std::time::Instant;
 use welt::feature::{self, Options, Request};
+use welt::grammar::RuleSet;
 use welt::io::{self, Format, ImportOptions};
 use welt::job::Job;
 use welt::mark::{Selection, Selector};
 use welt::surface::SAMPLES;
-
-const LEAF: &str = include_str!("../../tests/data/models/leaf_chair.obj");
 
 pub fn run(arguments: &Demo) -> Result<ExitCode, Failure> {
     let folder = &arguments.folder;
@@ -24,11 +24,15 @@ pub fn run(arguments: &Demo) -> Result<ExitCode, Failure> {
     for scene in &SCENES {
         let start = Instant::now();
         let before =
-            io::import_bytes(scene.name, Format::Obj, LEAF.as_bytes(), &ImportOptions::default())?.mesh;
+            io::import_bytes(scene.name, Format::Obj, scene.model.as_bytes(), &ImportOptions::default())?
+                .mesh;
         let selectors: Vec<Selector> =
             scene.marks.iter().map(|text| Selector::parse(text)).collect::<Result<_, _>>()?;
         let options = Options { samples: SAMPLES, method: scene.method, ..Options::default() };
-        let request = Request::features(scene.features, scene.set)?;
+        let request = match scene.rules {
+            Some(text) => Request::rules(RuleSet::parse(scene.name, text, &|_| None)?, scene.set)?,
+            None => Request::features(scene.features, scene.set)?,
+        };
         let selection = Selection::resolve(&before, &selectors)?;
         let mut after = before.clone();
         let report = feature::apply(&mut after, &selection, &request, &options, &Job::new())?;
@@ -52,5 +56,6 @@ pub fn run(arguments: &Demo) -> Result<ExitCode, Failure> {
             report.to_string().lines().try_for_each(|line| writeln!(out, "    {line}"))
         })?;
     }
-    Ok(ExitCode::SUCCESS)
+    // Figures 4 and 9: the rules themselves.
+    rules::draw(&feature::linear_rules()?, &folder.join("rules"), None)
 }

@@ -68,6 +68,18 @@ pub fn check_output(path: &Path) -> Result<(), Failure> {
     }
 }
 
+/// Whether two names lead to one file.
+pub fn are_same(a: &Path, b: &Path) -> bool {
+    let place = |path: &Path| {
+        let folder = match path.parent() {
+            Some(folder) if !folder.as_os_str().is_empty() => folder,
+            _ => Path::new("."),
+        };
+        path.canonicalize().ok().or_else(|| Some(folder.canonicalize().ok()?.join(path.file_name()?)))
+    };
+    !is_standard(a) && !is_standard(b) && place(a).is_some_and(|a| place(b) == Some(a))
+}
+
 /// Writes the control mesh.
 pub fn export(path: &Path, mesh: &Mesh) -> Result<(), Failure> {
     if !is_standard(path) {

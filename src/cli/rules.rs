@@ -16,7 +16,7 @@ use welt::picture::rule_svg;
 pub fn run(arguments: &Rules) -> Result<ExitCode, Failure> {
     match &arguments.action {
         RulesAction::Check { files, json } => check(files, *json),
-        RulesAction::Draw { file, output, cases } => draw(file, output, cases.as_deref()),
+        RulesAction::Draw { file, output, cases } => draw(&RuleSet::load(file)?, output, cases.as_deref()),
         RulesAction::Test { files } => test(files),
         RulesAction::List { file, json } => list(file.as_deref(), *json),
     }
@@ -83,14 +83,14 @@ fn check(files: &[PathBuf], json: bool) -> Result<ExitCode, Failure> {
 }
 
 /// One SVG per rule.
-fn draw(file: &Path, folder: &Path, cases: Option<&Path>) -> Result<ExitCode, Failure> {
-    let rules = RuleSet::load(file)?;
+/// Draws each rule into a file of `folder`; `cases` has the meshes of rules that cannot be drawn by themselves.
+pub fn draw(rules: &RuleSet, folder: &Path, cases: Option<&Path>) -> Result<ExitCode, Failure> {
     std::fs::create_dir_all(folder).map_err(|e| Failure::error(format_args!("{}: {e}", folder.display())))?;
     for rule in rules.rules() {
         let path = folder.join(format!("{}.svg", rule.name));
         let case = cases.map(|cases| cases.join(format!("{}.case", rule.name))).filter(|case| case.is_file());
         let case = case.map(|case| Case::load(&case)).transpose()?;
-        let svg = rule_svg(&rules, rule, case.as_ref());
+        let svg = rule_svg(rules, rule, case.as_ref());
         welt::io::save(&path, |out| out.write_all(svg.as_bytes()))?;
         print(|out| writeln!(out, "{}", path.display()))?;
     }

@@ -1,4 +1,4 @@
-//! The examples of `welt demo`: counterparts of the figures of Thaller, Augsdoerfer and Fellner 2016 on a real chair.
+//! The examples of `welt demo`: counterparts of the figures of Thaller, Augsdoerfer and Fellner 2016 on real chairs.
 //! `docs/figures.md` puts their figures beside the paper's.
 
 use glam::DVec3;
@@ -9,6 +9,10 @@ pub struct Scene {
     /// Name of its files.
     pub name: &'static str,
     pub title: &'static str,
+    /// The chair, as OBJ.
+    pub model: &'static str,
+    /// Rules to run on the marks instead of features.
+    pub rules: Option<&'static str>,
     pub features: &'static [&'static str],
     pub marks: &'static [&'static str],
     pub set: &'static [&'static str],
@@ -44,6 +48,10 @@ impl Side {
     }
 }
 
+const LEAF: &str = include_str!("../../tests/data/models/leaf_chair.obj");
+const ARMCHAIR: &str = include_str!("../../tests/data/models/chair.obj");
+const PATCHES: &str = include_str!("../../rules/patches.rules");
+
 /// The seam down the middle of the chair.
 const MIDDLE: &str = "ring:3,331";
 const MIDDLE_PIPED: &str = "ring:3,331#piping";
@@ -65,10 +73,12 @@ const SEAMS: &[&str] =
 
 const GROOVE: &[&str] = &["groove"];
 
-pub const SCENES: [Scene; 16] = [
+pub const SCENES: [Scene; 18] = [
     Scene {
         name: "ring",
         title: "A groove round a shell chair (ring:3,331; figures 5, 6b)",
+        model: LEAF,
+        rules: None,
         features: GROOVE,
         marks: &[MIDDLE],
         set: &["width=1.6", "depth=0.6"],
@@ -78,6 +88,8 @@ pub const SCENES: [Scene; 16] = [
     Scene {
         name: "ridge",
         title: "The same as a ridge (figure 6c)",
+        model: LEAF,
+        rules: None,
         features: &["ridge"],
         marks: &[MIDDLE],
         set: &["width=1.6", "height=0.5"],
@@ -87,6 +99,8 @@ pub const SCENES: [Scene; 16] = [
     Scene {
         name: "dent",
         title: "A dent in the back rest (figure 6d)",
+        model: LEAF,
+        rules: None,
         features: &["dent"],
         marks: &[PATCH],
         set: &["width=0.9", "depth=0.5"],
@@ -96,6 +110,8 @@ pub const SCENES: [Scene; 16] = [
     Scene {
         name: "interplay",
         title: "Features together: a seam that ends in another, and a dent (figure 6e)",
+        model: LEAF,
+        rules: None,
         features: GROOVE,
         marks: &[MIDDLE, HALF_ACROSS[0], HALF_ACROSS[1], "cut:1049,453,454,1084#dent"],
         set: &["width=1.2", "depth=0.4", "dent.width=0.5"],
@@ -105,6 +121,8 @@ pub const SCENES: [Scene; 16] = [
     Scene {
         name: "unfitted",
         title: "Three loops of depth 0 without a fit (figure 7a)",
+        model: LEAF,
+        rules: None,
         features: &["loop"],
         marks: &[MIDDLE],
         set: &["count=3"],
@@ -114,6 +132,8 @@ pub const SCENES: [Scene; 16] = [
     Scene {
         name: "fitted",
         title: "Three loops of depth 0, fitted (figure 7b)",
+        model: LEAF,
+        rules: None,
         features: &["loop"],
         marks: &[MIDDLE],
         set: &["count=3"],
@@ -123,6 +143,8 @@ pub const SCENES: [Scene; 16] = [
     Scene {
         name: "fitted_sliding",
         title: "Three loops of depth 0, fitted with sliding vertices",
+        model: LEAF,
+        rules: None,
         features: &["loop"],
         marks: &[MIDDLE],
         set: &["count=3"],
@@ -132,6 +154,8 @@ pub const SCENES: [Scene; 16] = [
     Scene {
         name: "free_crossing",
         title: "A wave off the edges crosses a seam along them (figure 8a)",
+        model: LEAF,
+        rules: None,
         features: GROOVE,
         marks: &[WAVE, MIDDLE],
         set: SEAM,
@@ -141,6 +165,8 @@ pub const SCENES: [Scene; 16] = [
     Scene {
         name: "free_dent",
         title: "A dent with an outline off the edges (figure 8b)",
+        model: LEAF,
+        rules: None,
         features: &["dent"],
         marks: &[ROUND],
         set: &["width=0.6", "depth=0.5"],
@@ -150,6 +176,8 @@ pub const SCENES: [Scene; 16] = [
     Scene {
         name: "crossing",
         title: "Two seams that cross (figure 13a)",
+        model: LEAF,
+        rules: None,
         features: GROOVE,
         marks: &[MIDDLE, ACROSS],
         set: SEAM,
@@ -159,6 +187,8 @@ pub const SCENES: [Scene; 16] = [
     Scene {
         name: "corner",
         title: "A seam with four corners (figure 13b)",
+        model: LEAF,
+        rules: None,
         features: GROOVE,
         marks: &[PATCH],
         set: &["width=1.2", "depth=0.5"],
@@ -168,6 +198,8 @@ pub const SCENES: [Scene; 16] = [
     Scene {
         name: "tee",
         title: "A seam that ends in another one (figure 13c)",
+        model: LEAF,
+        rules: None,
         features: GROOVE,
         marks: &[MIDDLE, HALF_ACROSS[0], HALF_ACROSS[1]],
         set: SEAM,
@@ -177,6 +209,8 @@ pub const SCENES: [Scene; 16] = [
     Scene {
         name: "tee_as_printed",
         title: "The same by the paper's Rule 6: the seam ends at a dam",
+        model: LEAF,
+        rules: None,
         features: GROOVE,
         marks: &[MIDDLE, HALF_ACROSS[0], HALF_ACROSS[1]],
         set: &["width=1.2", "depth=0.4", "paper_tees=1"],
@@ -186,6 +220,8 @@ pub const SCENES: [Scene; 16] = [
     Scene {
         name: "piped_tee",
         title: "A seam that ends in a piped one (figures 11, 13d)",
+        model: LEAF,
+        rules: None,
         features: GROOVE,
         marks: &[MIDDLE_PIPED, HALF_ACROSS[0], HALF_ACROSS[1]],
         set: SEAMS,
@@ -195,6 +231,8 @@ pub const SCENES: [Scene; 16] = [
     Scene {
         name: "piped_crossing",
         title: "A seam ends at a piped one and resumes behind it (figures 12, 13e)",
+        model: LEAF,
+        rules: None,
         features: GROOVE,
         marks: &[MIDDLE_PIPED, ACROSS],
         set: SEAMS,
@@ -204,10 +242,34 @@ pub const SCENES: [Scene; 16] = [
     Scene {
         name: "free",
         title: "A seam off the edges (figure 13f)",
+        model: LEAF,
+        rules: None,
         features: GROOVE,
         marks: &[WAVE],
         set: SEAM,
         method: Method::Solve,
         view: Side::Near,
+    },
+    Scene {
+        name: "refined",
+        title: "The faces of the groove by general refinement, to compare (figure 10)",
+        model: LEAF,
+        rules: Some(PATCHES),
+        features: &[],
+        marks: &[MIDDLE],
+        set: &["depth=2"],
+        method: Method::Solve,
+        view: Side::Left,
+    },
+    Scene {
+        name: "armchair",
+        title: "Pipings round the seat and the back of another chair",
+        model: ARMCHAIR,
+        rules: None,
+        features: &["piping"],
+        marks: &["ring:132,224", "ring:262,265"],
+        set: &["width=1.6", "height=0.6", "depth=0.2"],
+        method: Method::Solve,
+        view: Side::Left,
     },
 ];

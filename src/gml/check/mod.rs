@@ -37,6 +37,8 @@ pub(crate) enum Leaves {
 pub(crate) struct Effect {
     /// `AttrSet`, `AttrDel`, `LinkSet` or `LinkDel`.
     pub(crate) word: Word,
+    /// The node of the pattern to which it does it, if that is certain.
+    pub(crate) node: Option<u32>,
     /// The name or the label.
     pub(crate) key: StringId,
     /// The value that is set, if it is written in the script.
@@ -235,7 +237,9 @@ impl Checker<'_> {
                 Op::Push(value) => {
                     self.state.stack.push(Known { value: Some(value), ..Known::of(Kinds::of_value(&value)) });
                 }
-                Op::Node { domain, .. } => self.push(Kinds::of_domain(domain)),
+                Op::Node { index, domain } => {
+                    self.state.stack.push(Known { node: Some(index), ..Known::of(Kinds::of_domain(domain)) });
+                }
                 Op::Parameter(_) => self.push(Kinds::NUMBER),
                 Op::Load(slot) => {
                     let known = self.load(slot);

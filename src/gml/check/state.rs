@@ -11,10 +11,12 @@ pub(super) struct Known {
     pub(super) value: Option<Value>,
     /// Kinds of the elements, of an array.
     pub(super) elements: Kinds,
+    /// The node of the pattern that it is, if that is certain.
+    pub(super) node: Option<u32>,
 }
 
 impl Known {
-    pub(super) const ANY: Self = Self { kinds: Kinds::ANY, value: None, elements: Kinds::ANY };
+    pub(super) const ANY: Self = Self { kinds: Kinds::ANY, value: None, elements: Kinds::ANY, node: None };
 
     pub(super) fn of(kinds: Kinds) -> Self {
         Self { kinds, ..Self::ANY }
@@ -26,6 +28,7 @@ impl Known {
             kinds: self.kinds.or(other.kinds),
             value: if self.value == other.value { self.value } else { None },
             elements: self.elements.or(other.elements),
+            node: if self.node == other.node { self.node } else { None },
         }
     }
 }

@@ -166,14 +166,15 @@ impl Checker<'_> {
 
     fn note_effect(&mut self, word: Word, taken: &[Known]) {
         match (word, taken) {
-            (Word::AttrSet | Word::AttrDel | Word::LinkSet | Word::LinkDel, [_, key, rest @ ..]) => {
+            (Word::AttrSet | Word::AttrDel | Word::LinkSet | Word::LinkDel, [element, key, rest @ ..]) => {
                 let (Some(Value::Text(key)) | Some(Value::Name(key))) = key.value else {
                     let sets = matches!(word, Word::AttrSet | Word::LinkSet);
                     self.effects.sets_more |= sets;
                     self.effects.deletes_more |= !sets;
                     return;
                 };
-                let effect = Effect { word, key, value: rest.first().and_then(|value| value.value) };
+                let value = rest.first().and_then(|value| value.value);
+                let effect = Effect { word, node: element.node, key, value };
                 if !self.effects.annotations.contains(&effect) {
                     self.effects.annotations.push(effect);
                 }

@@ -2,7 +2,7 @@
 
 use super::Kind;
 use crate::gml::Diagnostic;
-use crate::grammar::pattern::{Label, Pattern, PatternEdge};
+use crate::grammar::pattern::{Label, Pattern, PatternEdge, Test};
 use crate::grammar::ruleset::{Rule, RuleSet};
 
 pub(super) fn warnings(set: &RuleSet) -> Vec<Diagnostic> {
@@ -38,16 +38,26 @@ fn stays_matched(set: &RuleSet, rule: &Rule) -> Option<Diagnostic> {
     if effects.topology && rule.pattern.edges.iter().any(is_ring) {
         return None;
     }
-    let takes = |(kind, name): (Kind, &str)| rule.deletes(set, kind, name);
+    // Different nodes of a pattern are different elements.
+    let takes_off =
+        |node: usize, test: &Test| rule.deletes(set, Kind::Attribute, &test.attribute, Some(node));
+    let takes = |(kind, name): (Kind, &str)| rule.deletes(set, kind, name, None);
     let gives = |(kind, name): (Kind, &str)| !rule.sets(set, kind, name).is_empty();
     let valued = rule.pattern.nodes.iter().flat_map(|node| &node.tests).filter(|test| test.value.is_some());
-    let consumes = names(&rule.pattern).any(takes)
-        || valued.into_iter().any(|test| gives((Kind::Attribute, test.attribute.as_str())))
-        || rule
-            .forbidden
-            .iter()
-            .flat_map(|forbidden| names(&forbidden.pattern))
-            .any(|name| gives(name) || takes(name));
+    let consumes =
+        rule.pattern.nodes.iter().enumerate().any(|(i, node)| node.tests.iter().any(|t| takes_off(i, t)))
+            || rule
+                .pattern
+                .edges
+                .iter()
+                .filter_map(|edge| edge.label.link())
+                .any(|name| takes((Kind::Link, name)))
+            || valued.into_iter().any(|test| gives((Kind::Attribute, test.attribute.as_str())))
+            || rule
+                .forbidden
+                .iter()
+                .flat_map(|forbidden| names(&forbidden.pattern))
+                .any(|name| gives(name) || takes(name));
     (!consumes).then(|| {
         let message = format!(
             "rule {} may never end: its action changes nothing that its pattern looks at, so it matches at the same place again",

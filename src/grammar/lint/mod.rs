@@ -73,10 +73,14 @@ impl Rule {
             .collect()
     }
 
-    /// The action takes `name` off some node.
-    fn deletes(&self, set: &RuleSet, kind: Kind, name: &str) -> bool {
+    /// The action takes `name` off some element; where `node` is given, off one that may be this node of the pattern.
+    fn deletes(&self, set: &RuleSet, kind: Kind, name: &str, node: Option<usize>) -> bool {
         let word = if kind == Kind::Attribute { Word::AttrDel } else { Word::LinkDel };
-        self.annotations(set, word, name).next().is_some()
+        let mut effects = self.effects.annotations.iter();
+        effects.any(|effect| {
+            let elsewhere = effect.node.zip(node).is_some_and(|(there, here)| there as usize != here);
+            effect.word == word && *set.strings.get(effect.key) == *name && !elsewhere
+        })
     }
 
     fn annotations(&self, set: &RuleSet, word: Word, name: &str) -> impl Iterator<Item = Option<Script>> {

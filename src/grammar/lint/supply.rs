@@ -58,7 +58,7 @@ fn left_behind(set: &RuleSet, rule: &Rule) -> Option<Diagnostic> {
         let test = |test: &Test| test.attribute == name && test.value.is_some();
         let tested = rule.pattern.nodes.iter().flat_map(|node| &node.tests).any(test);
         other.effects.deletes_more
-            || other.deletes(set, kind, name)
+            || other.deletes(set, kind, name, None)
             || (tested && !other.sets(set, kind, name).is_empty())
     };
     if set.rules.iter().any(changes) {
