@@ -88,6 +88,16 @@ std::string summary(welt::Mesh const& mesh, std::size_t marks, welt::Report cons
                         .arg(values["reached_mean"].toDouble())
                         .arg(values["asked_mean"].toDouble());
         }
+    for (QJsonValue const value : all["warnings"].toArray()) {
+        QJsonObject const warning = value.toObject();
+        if (warning["kind"].toString() == "fold")
+            text += QString("\nwarning: the limit surface folds at %1 vertices; ask for less depth or more width")
+                        .arg(warning["vertices"].toArray().size());
+        else if (warning["kind"].toString() == "wall")
+            text += QString("\nwarning: a depth of %1 exceeds the wall, which is %2 thick; ask for less depth")
+                        .arg(warning["depth"].toDouble())
+                        .arg(warning["thickness"].toDouble());
+    }
     int const leftovers = all["leftovers"].toArray().size();
     if (leftovers > 0) text += QString("\nwarning: no rule handles the marks of %1 polygons; set strict to see which").arg(leftovers);
     return text.toStdString();

@@ -3,6 +3,7 @@
 import os
 import types
 
+import FreeCAD
 from support import Case, edge_name, run, torus
 
 from freecad.welt import selection
@@ -92,6 +93,28 @@ class Recomputed(Case):
         deviation.Base = deviation.Reference = cage
         self.recompute()
 
+    def test_marks_that_are_none(self):
+        cage = self.cage()
+        groove = self.groove(cage, 0, 1)
+        marks = groove.Marks
+        for wrong in (cage, self.document.addObject("Part::Box", "Box")):
+            groove.Marks = [wrong]
+            self.refused(groove, f"(?i){wrong.Label} is no marks: set the property Marks to")
+        groove.Marks = marks
+        self.recompute()
+
+    def test_a_depth_that_folds(self):
+        groove = self.groove(self.cage(), 0, 1, Width=1.0, Depth=1000)
+        self.assertRegex(groove.Warnings[0], "The limit surface folds at [0-9]+ vertices: ask for less depth or more width")
+
+    def test_another_rule_file(self):
+        profiles = os.path.join(os.environ["WELT_REPOSITORY"], "profiles")
+        made = make_feature([make_marks(self.cage(), ["Edge1"])], "rules", os.path.join(profiles, "groove.toml"))
+        self.recompute()
+        made.Rules = os.path.join(profiles, "piping.toml")
+        self.recompute()
+        self.assertIn("Height", made.PropertiesList)
+
     def test_marks_that_are_too_few(self):
         cage = self.cage()
         marks = make_marks(cage, [edge_name(cage, 0, 1)], "Path")
@@ -155,11 +178,32 @@ print("said:", document.Groove.getStatusString() + " | " + document.Marks.getSta
 print("shape:", len(document.Groove.Shape.Edges))
 """
         for library, said in (
-            ("/nowhere/libwelt.so", "The welt library is not usable: the welt library cannot be loaded .*install the package"),
-            ("libm.so.6", "libm.so.6 is no welt library; install the package"),
+            ("/nowhere/libwelt.so", "The welt library is not usable: the welt library cannot be loaded .*install the addon again"),
+            ("libm.so.6", "libm.so.6 is no welt library; install the addon again"),
         ):
             with self.subTest(library=library):
                 out, err = run(program, WELT_LIBRARY=library)
                 self.assertRegex(out, said)
                 self.assertIn(f"shape: {len(cage.Shape.Edges)}", out)
                 self.assertNotIn("Traceback", out + err)
+
+    def test_saved_where_the_addon_is_absent(self):
+        groove = self.groove(self.cage(torus(8, 6)), 0, 1, Width=2.0)
+        make_limit(groove)
+        self.recompute()
+        self.document.saveAs(self.path("groove.FCStd"))
+        save = f"""
+import FreeCAD
+document = FreeCAD.openDocument({self.path("groove.FCStd")!r})
+print("proxy:", document.Groove.Proxy)
+document.saveAs({self.path("again.FCStd")!r})
+"""
+        self.assertIn("proxy: None", run(save, HOME=self.folder)[0])
+        again = FreeCAD.openDocument(self.path("again.FCStd"))
+        self.addCleanup(lambda: FreeCAD.closeDocument(again.Name))
+        kinds = [obj.Proxy.kind for obj in self.document.Objects]
+        self.assertEqual([obj.Proxy.kind for obj in again.Objects], kinds)
+        for document in (self.document, again):
+            document.Groove.Width = 2.5
+            document.recompute()
+        self.assertEqual(again.Groove.Proxy.mesh(again.Groove).positions.tolist(), groove.Proxy.mesh(groove).positions.tolist())

@@ -53,7 +53,7 @@ class Header(unittest.TestCase):
         table = _abi.functions()
         apply = table["welt_feature_apply"]
         self.assertEqual(len(apply.arguments), 10)
-        self.assertEqual(apply.handles, [(0, True), (1, False), (7, False)], "the mesh is changed, selection and job are read")
+        self.assertEqual(apply.handles, [(0, True, "welt_mesh"), (1, False, "welt_selection"), (7, False, "welt_job")], "the mesh is changed, selection and job are read")
         self.assertTrue(apply.fails)
         self.assertIs(table["welt_mesh_set_edge_sharpness"].arguments[2], ctypes.POINTER(ctypes.c_float))
         self.assertIs(table["welt_mesh_positions"].arguments[1], ctypes.POINTER(ctypes.POINTER(ctypes.c_double)))

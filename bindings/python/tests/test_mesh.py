@@ -254,6 +254,12 @@ class Features(unittest.TestCase):
         self.assertIsInstance(report, dict)
         self.assertAlmostEqual(mesh.limit_positions()[12, 2], 0.0, 9)
 
+    def test_what_is_no_selection_never_reaches_the_library(self):
+        mesh = cube()
+        for wrong in ("ring:0,1", mesh.copy(), 5):
+            with self.assertRaisesRegex(TypeError, "a selection is needed, not .*: make one by the method select"):
+                mesh.apply(wrong, "groove")
+
 
 class Surfaces(unittest.TestCase):
     """On the plane, where everything is known."""

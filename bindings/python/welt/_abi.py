@@ -290,8 +290,8 @@ class Function(NamedTuple):
 
     result: Any
     arguments: List[Any]
-    # Index of each parameter that is a handle, and whether the call changes what it leads to.
-    handles: List[Tuple[int, bool]]
+    # Index of each parameter that is a handle, whether the call changes what it leads to, and its kind.
+    handles: List[Tuple[int, bool, str]]
     # Whether the last parameter is the error.
     fails: bool
 
@@ -337,7 +337,7 @@ def functions() -> Dict[str, Function]:
         if not prototype.strip():
             continue
         name, result, parameters = parse(prototype)
-        handles = [(i, not p.startswith("const")) for i, p in enumerate(parameters) if is_handle(p)]
+        handles = [(i, not p.startswith("const"), p.replace("const ", "").split()[0]) for i, p in enumerate(parameters) if is_handle(p)]
         arguments = [Observer if p == "observer" else ctype(p) for p in parameters]
         fails = bool(parameters) and parameters[-1] == "welt_error **"
         table[name] = Function(ctype(result), arguments, handles, fails)

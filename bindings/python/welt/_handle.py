@@ -86,10 +86,14 @@ def call(name: str, *arguments: Any) -> Any:
     values = list(arguments)
     used: List[Tuple[Owner, bool]] = []
     try:
-        for index, change in function.handles:
+        for index, change, kind in function.handles:
             handle = arguments[index]
             if handle is None:
                 continue
+            if not isinstance(handle, Handle) or handle._free != kind + "_free":
+                wanted = kind.replace("welt_", "", 1)
+                remedy = ": make one by the method select of the mesh" if wanted == "selection" else ""
+                raise TypeError(f"a {wanted} is needed, not {type(handle).__name__}{remedy}")
             owner = handle._owner
             if owner is None:
                 raise errors.ArgumentError(f"the {handle._kind} was closed")

@@ -57,7 +57,7 @@ class Command:
         if not keep_open:
             document.commitTransaction()
             document.recompute()
-            broken = [obj for obj in document.Objects if not obj.isValid() and hasattr(obj.Proxy, "kind")]
+            broken = [obj for obj in document.Objects if not obj.isValid() and hasattr(getattr(obj, "Proxy", None), "kind")]
             if broken:
                 tell(broken[-1].getStatusString())
 

@@ -61,6 +61,9 @@ class Feature(Proxy):
 
     def compute(self, obj):
         self._mesh = None
+        if obj.Feature == "rules" and os.path.exists(obj.Rules):
+            # Another file, or an edited one, may declare other parameters.
+            add_parameters(obj)
         mesh, report = applied(obj)
         obj.Warnings = warnings(report)
         obj.Report = json.dumps(report)
@@ -171,11 +174,22 @@ def settings(obj):
 
 def warnings(report):
     """The sentences of a report that a user should see."""
-    said = [str(warning.get("message", warning) if isinstance(warning, dict) else warning) for warning in report.get("warnings", [])]
+    said = [warned(warning) for warning in report.get("warnings", [])]
     left = len(report.get("leftovers", []))
     if left:
         said.append(translate("Welt", "{} marks were left over: no rule fits there").format(left))
     return said
+
+
+def warned(warning):
+    """A warning of a report as a sentence."""
+    if warning.get("kind") == "fold":
+        text = translate("Welt", "The limit surface folds at {} vertices: ask for less depth or more width")
+        return text.format(len(warning["vertices"]))
+    if warning.get("kind") == "wall":
+        text = translate("Welt", "A depth of {:.4g} exceeds the wall, which is {:.4g} thick: ask for less depth")
+        return text.format(warning["depth"], warning["thickness"])
+    return str(warning)
 
 
 def make_feature(marks, name, rules="", **values):

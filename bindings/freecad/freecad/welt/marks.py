@@ -61,6 +61,9 @@ class Marks(Proxy):
 
 def base_of(marks):
     """The cage or feature on which marks are."""
+    if getattr(getattr(marks, "Proxy", None), "kind", "") != "marks":
+        text = translate("Welt", "{} is no marks: set the property Marks to objects that the Mark commands made")
+        raise Problem(text.format(marks.Label))
     return marks.Elements[0] if marks.Elements else None
 
 

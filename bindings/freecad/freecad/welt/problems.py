@@ -17,7 +17,9 @@ def library():
         import welt
     except ImportError as error:
         raise Problem(
-            translate("Welt", "The welt library is not usable: {}. Then start FreeCAD again.").format(str(error).rstrip("."))
+            translate(
+                "Welt", "The welt library is not usable: {}; install the addon again (bindings/freecad/install.py) and start FreeCAD again."
+            ).format(str(error).partition("; install the package")[0].rstrip("."))
         ) from None
     return welt
 
