@@ -61,7 +61,7 @@ class Feature(Proxy):
 
     def compute(self, obj):
         self._mesh = None
-        if obj.Feature == "rules" and os.path.exists(obj.Rules):
+        if obj.Feature == "rules" and os.path.isfile(obj.Rules):
             # Another file, or an edited one, may declare other parameters.
             add_parameters(obj)
         mesh, report = applied(obj)
@@ -97,7 +97,7 @@ def what(obj):
     welt = library()
     if not obj.Feature == "rules":
         return obj.Feature
-    if not os.path.exists(obj.Rules):
+    if not os.path.isfile(obj.Rules):
         raise rules_gone(obj.Rules)
     return obj.Rules if obj.Rules.endswith(".toml") else welt.Rules(obj.Rules)
 
