@@ -4,38 +4,8 @@
 #[path = "common/curved_sheet.rs"]
 mod curved_sheet;
 
-use curved_sheet::{Base, Case, Pattern};
-use std::time::Instant;
-use welt::job::Job;
-use welt::mesh::FaceId;
-use welt::optimise::{Method, Target, active_set, fit};
-use welt::surface::{Deviation, LimitSurface, Sampling, deviation_samples};
-
-/// Cells away from the junction that are looked at.
-const WITHIN: usize = 4;
-/// Half width of the control band.
-const WIDTH: f64 = 0.15;
-
-/// Deviation near the junction, and the time of the fit in milliseconds.
-fn measure(case: &Case, method: Method) -> (Deviation, f64) {
-    let faces: Vec<FaceId> = case.before.faces().collect();
-    let target = Target::freeze(&case.before, &faces, &Job::new()).expect("not cancelled");
-    let mut after = case.after.clone();
-    let active = active_set(&after, &case.changed(), method);
-    let start = Instant::now();
-    fit(&mut after, &active, &target, method, &Job::new()).expect("not cancelled");
-    let time = start.elapsed().as_secs_f64() * 1e3;
-    // Vertices that were inserted on edges keep their places along them: the width of a band depends on it.
-    if method == Method::FitSlide {
-        let bound = case.before.vertex_bound();
-        let moved = |v: &welt::mesh::VertexId| after.position(*v) != case.after.position(*v);
-        assert!(after.vertices().filter(|v| v.index() < bound).any(|v| moved(&v)));
-    }
-    let now = LimitSurface::new(&after);
-    let near = |f: FaceId| case.away[f.index()] <= WITHIN;
-    let samples = deviation_samples(&now, near, &target.surface, Sampling::default(), &Job::new());
-    (Deviation::of(&samples.expect("not cancelled")), time)
-}
+use curved_sheet::{Base, Case, Pattern, WIDTH, measure};
+use welt::optimise::Method;
 
 fn mean(values: impl Iterator<Item = f64>) -> f64 {
     let (sum, count) = values.fold((0.0, 0.0), |(sum, count), x| (sum + x, count + 1.0));
@@ -83,26 +53,4 @@ fn a_tee_on_a_sphere_of_six_edges_is_closer_than_a_thousandth_of_an_edge() {
     let (d, _) = measure(&Case::new(Base::Sphere, 6.0, Pattern::Tee, WIDTH), Method::FitSlide);
     println!("T-DE on a sphere, radius 6 edges: max {:.5}, rms {:.6}", d.max, d.rms);
     assert!(d.max < 1e-3, "{}", d.max);
-}
-
-/// The tables of docs/optimisation.md.
-#[test]
-#[ignore = "prints: cargo test --release --test fit_study -- --ignored --nocapture"]
-fn tables() {
-    for radius in [3.0, 6.0, 12.0] {
-        for (base, pattern) in
-            Base::ALL.into_iter().flat_map(|base| Pattern::ALL.map(|pattern| (base, pattern)))
-        {
-            let case = Case::new(base, radius, pattern, WIDTH);
-            print!("| {radius} | {base:?} | {pattern:?} |");
-            for method in [Method::None, Method::Solve, Method::Fit, Method::FitSlide] {
-                let (d, time) = measure(&case, method);
-                print!(
-                    " {:.5} / {:.5} / {:.3} / {:.1} / {time:.1} |",
-                    d.max, d.rms, d.curvature_rms, d.normal
-                );
-            }
-            println!();
-        }
-    }
 }

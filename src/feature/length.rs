@@ -7,7 +7,7 @@ use std::str::FromStr;
 /// A width, depth or height.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub enum Length {
-    /// In model units.
+    /// In model units. Text that names one gives at most 1e50 either way.
     Units(f64),
     /// As a fraction of the length of the crossed edge (`30%` is 0.3); for a width, of the edge's extent across the
     /// feature, which is its length where it is crossed at a right angle.
@@ -31,6 +31,9 @@ impl Length {
     }
 }
 
+/// Longer lengths are refused: their squares and products would overflow in what is measured afterwards.
+const MOST: f64 = 1e50;
+
 impl FromStr for Length {
     type Err = String;
 
@@ -46,6 +49,9 @@ impl FromStr for Length {
             .ok()
             .filter(|x: &f64| x.is_finite())
             .ok_or_else(|| format!("'{text}' is not a length; give a number in model units, or a percentage of the local edge such as 30%"))?;
+        if x.abs() > MOST {
+            return Err(format!("'{text}' is out of range; lengths are at most {MOST:e}"));
+        }
         Ok(if percent { Self::OfEdge(x / 100.0) } else { Self::Units(x) })
     }
 }

@@ -2,7 +2,11 @@
 
 use glam::DVec3;
 use std::collections::HashMap;
-use welt::mesh::{Mesh, Polygons};
+use std::time::Instant;
+use welt::job::Job;
+use welt::mesh::{FaceId, Mesh, Polygons, VertexId};
+use welt::optimise::{Method, Target, active_set, fit};
+use welt::surface::{Deviation, LimitSurface, Sampling, deviation_samples};
 
 /// Cells along each side; the junction is in the middle one.
 pub const SIDE: usize = 13;
@@ -17,8 +21,6 @@ pub enum Base {
 }
 
 impl Base {
-    pub const ALL: [Self; 3] = [Self::Cylinder, Self::Sphere, Self::Saddle];
-
     /// Control point (i, j), the middle of the sheet at the origin of the parameters.
     fn point(self, radius: f64, i: usize, j: usize) -> DVec3 {
         let [x, y] = [i, j].map(|k| k as f64 - 0.5 * SIDE as f64);
@@ -199,4 +201,30 @@ impl Case {
         let bound = self.before.vertex_bound() as u32;
         self.after.faces().filter(|&f| self.after.face_vertices(f).any(|v| v.0 >= bound)).collect()
     }
+}
+
+/// Cells away from the junction that are looked at.
+const WITHIN: usize = 4;
+/// Half width of the control band.
+pub const WIDTH: f64 = 0.15;
+
+/// Deviation near the junction, and the time of the fit in milliseconds.
+pub fn measure(case: &Case, method: Method) -> (Deviation, f64) {
+    let faces: Vec<FaceId> = case.before.faces().collect();
+    let target = Target::freeze(&case.before, &faces, &Job::new()).expect("not cancelled");
+    let mut after = case.after.clone();
+    let active = active_set(&after, &case.changed(), method);
+    let start = Instant::now();
+    fit(&mut after, &active, &target, method, &Job::new()).expect("not cancelled");
+    let time = start.elapsed().as_secs_f64() * 1e3;
+    // Vertices that were inserted on edges keep their places along them: the width of a band depends on it.
+    if method == Method::FitSlide {
+        let bound = case.before.vertex_bound();
+        let moved = |v: &VertexId| after.position(*v) != case.after.position(*v);
+        assert!(after.vertices().filter(|v| v.index() < bound).any(|v| moved(&v)));
+    }
+    let now = LimitSurface::new(&after);
+    let near = |f: FaceId| case.away[f.index()] <= WITHIN;
+    let samples = deviation_samples(&now, near, &target.surface, Sampling::default(), &Job::new());
+    (Deviation::of(&samples.expect("not cancelled")), time)
 }

@@ -183,7 +183,7 @@ impl Host<'_> {
         let mut error = null_mut();
         // SAFETY: every pointer is NULL, a live handle, or a buffer with the room that is told.
         unsafe {
-            match call % 28 {
+            match call % 31 {
                 0 => self.create(&mut error),
                 1 => {
                     let (mesh, bytes) = (self.mesh(), self.byte());
@@ -415,6 +415,20 @@ impl Host<'_> {
                     let vertices = if count == 0 { null() } else { self.indices.as_ptr() };
                     welt_mesh_fit(mesh, vertices, count, surface, fit, job, null_mut(), &mut error);
                 }
+                28 => {
+                    let (mesh, index) = (self.mesh(), self.slot());
+                    renew!(self.meshes[index], welt_mesh_free, |handle| {
+                        welt_mesh_copy(mesh, handle, &mut error)
+                    });
+                }
+                29 => {
+                    let refinement = self.pick(|host| &host.refinements);
+                    let (level, index) = (self.byte() as u32 % 3, self.slot());
+                    renew!(self.meshes[index], welt_mesh_free, |handle| {
+                        welt_refinement_mesh(refinement, level, handle, &mut error)
+                    });
+                }
+                30 => self.patches(&mut error),
                 26 => {
                     let index = self.slot();
                     renew!(self.jobs[index], welt_job_free, |handle| welt_job_create(handle, &mut error));
@@ -526,6 +540,42 @@ impl Host<'_> {
                 )
             })
         };
+    }
+
+    /// Patches for CAD, and one of them read to its end.
+    unsafe fn patches(&mut self, error: *mut *mut WeltError) {
+        let (mesh, job) = (self.mesh(), self.job());
+        if self.vertex_count(mesh) > MOST_VERTICES {
+            return;
+        }
+        self.fill();
+        let (count, index) = (self.count(0), self.byte());
+        let faces = if count == 0 { null() } else { self.indices.as_ptr() };
+        // SAFETY: numbers only; set by the call.
+        let mut options: WeltPatchOptions = unsafe { std::mem::zeroed() };
+        unsafe { welt_patch_options_init(&mut options, size_of::<WeltPatchOptions>()) };
+        if index > 240 {
+            options.tolerance = NUMBERS[index % 16];
+        }
+        let mut patches = null_mut();
+        // SAFETY: handles, and arrays with the room that is told.
+        unsafe {
+            if welt_patches_create(mesh, faces, count, &options, job, &mut patches, error) != WELT_OK {
+                return;
+            }
+            let number = index % (welt_patches_count(patches) + 1);
+            let mut patch: WeltPatch = std::mem::zeroed();
+            if welt_patches_get(patches, number, &mut patch, error) == WELT_OK {
+                let poles = 3 * patch.pole_count_u as usize * patch.pole_count_v as usize;
+                for i in 0..poles {
+                    std::hint::black_box(*patch.poles.add(i));
+                }
+                for i in 0..patch.face_count {
+                    std::hint::black_box(*patch.faces.add(i));
+                }
+            }
+            welt_patches_free(patches);
+        }
     }
 
     unsafe fn surface_of(&mut self, error: *mut *mut WeltError) {

@@ -8,7 +8,21 @@ from .problems import Problem, library, refuse
 translate = FreeCAD.Qt.translate
 
 
-class Proxy:
+class Stateless:
+    """What FreeCAD stores in a document about an object of Python: nothing, properties hold all."""
+
+    def dumps(self):
+        return None
+
+    def loads(self, _state):
+        return None
+
+    # The names of FreeCAD 0.20.
+    __getstate__ = dumps
+    __setstate__ = loads
+
+
+class Proxy(Stateless):
     """A document object whose data is Python's. Subclasses give `kind`, `add_properties` and `compute`."""
 
     kind = ""
@@ -37,16 +51,6 @@ class Proxy:
     def placed_as(self, _obj):
         """The object whose placement this one copies."""
         return None
-
-    def dumps(self):
-        return None
-
-    def loads(self, _state):
-        return None
-
-    # The names of FreeCAD 0.20.
-    __getstate__ = dumps
-    __setstate__ = loads
 
 
 def add(obj, kind, name, group, tooltip, value=None):

@@ -4,6 +4,8 @@ import os
 
 import FreeCAD
 
+from .objects import Stateless
+
 ICONS = os.path.join(os.path.dirname(__file__), "Resources", "icons")
 
 
@@ -11,7 +13,7 @@ def icon(name):
     return os.path.join(ICONS, f"Welt{name}.svg")
 
 
-class View:
+class View(Stateless):
     """The view of an object of the workbench."""
 
     def __init__(self, vobj):
@@ -41,15 +43,6 @@ class View:
         if kind == "marks" and obj.Elements:
             return [obj.Elements[0]]
         return []
-
-    def dumps(self):
-        return None
-
-    def loads(self, _state):
-        return None
-
-    __getstate__ = dumps
-    __setstate__ = loads
 
 
 LOOKS = {
