@@ -1,18 +1,43 @@
 //! Bad inputs of every kind, with the functions that are fuzzed: the corpora, what fuzzing found, and both damaged in
-//! ways that a fixed seed chooses. None panics or takes long. The table is written to `target/bad_inputs.md`.
+//! ways that a fixed seed chooses. None panics, takes long or leaks. The table is written to `target/bad_inputs.md`.
 
 #[path = "fuzz/src/lib.rs"]
 mod fuzz;
 
+use std::alloc::{GlobalAlloc, Layout, System};
 use std::collections::BTreeSet;
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 use std::time::{Duration, Instant};
+
+/// Counts what is allocated and not freed.
+struct Counting;
+
+static LIVE: AtomicUsize = AtomicUsize::new(0);
+
+// SAFETY: everything is left to the allocator of the system.
+unsafe impl GlobalAlloc for Counting {
+    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
+        LIVE.fetch_add(layout.size(), Relaxed);
+        unsafe { System.alloc(layout) }
+    }
+
+    unsafe fn dealloc(&self, place: *mut u8, layout: Layout) {
+        LIVE.fetch_sub(layout.size(), Relaxed);
+        unsafe { System.dealloc(place, layout) }
+    }
+}
+
+#[global_allocator]
+static ALLOCATOR: Counting = Counting;
 
 /// Distinct inputs of each kind.
 const INPUTS: usize = 2000;
 /// No input may take longer.
 const LONGEST: Duration = Duration::from_secs(5);
+/// One input in so many is tried again, to see that nothing stays allocated but the tables made at first use.
+const AGAIN: usize = 8;
 /// Longer inputs are cut, as when fuzzing.
 const LENGTH: usize = 8192;
 
@@ -131,6 +156,11 @@ fn feed(name: &str, target: fuzz::Target) -> (usize, usize, Duration) {
         let time = start.elapsed();
         assert!(time < LONGEST, "{name}: {time:?} for {:?}", String::from_utf8_lossy(input));
         longest = longest.max(time);
+    }
+    for input in inputs.iter().step_by(AGAIN) {
+        let live = LIVE.load(Relaxed);
+        target(input);
+        assert_eq!(LIVE.load(Relaxed), live, "{name}: memory lost by {:?}", String::from_utf8_lossy(input));
     }
     (inputs.len(), refused, longest)
 }
