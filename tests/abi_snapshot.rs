@@ -1,6 +1,6 @@
 //! The binary interface as it was recorded in `tests/data/abi.txt`: functions, layouts of structs, constants. What is
 //! there may not change or go while `WELT_ABI_VERSION` stays; what is new must be recorded, with
-//! `WELT_RECORD_ABI=1 cargo test --test abi_snapshot`, and told in CHANGELOG.md.
+//! `WELT_RECORD_ABI=1 cargo test --test all abi_snapshot`, and told in CHANGELOG.md.
 
 use std::path::{Path, PathBuf};
 use welt::ffi;
@@ -135,7 +135,7 @@ fn nothing_changed_unannounced() {
     let new: Vec<&String> = now.iter().filter(|line| !recorded.contains(line)).collect();
     assert!(
         new.is_empty() && gone.is_empty(),
-        "not recorded: {new:#?}\ntell it in CHANGELOG.md and record it: WELT_RECORD_ABI=1 cargo test --test abi_snapshot"
+        "not recorded: {new:#?}\ntell it in CHANGELOG.md and record it: WELT_RECORD_ABI=1 cargo test --test all abi_snapshot"
     );
 }
 

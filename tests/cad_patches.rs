@@ -1,6 +1,6 @@
 //! The limit surface as B-spline patches: against evaluation, by their sides, and in a CAD kernel.
 
-mod common;
+use crate::common;
 
 use glam::DVec3;
 use std::path::{Path, PathBuf};

@@ -1,6 +1,6 @@
 //! The figures of `inspect` against those that the catalogue of test meshes gives (made with other software).
 
-mod common;
+use crate::common;
 
 use std::collections::BTreeMap;
 use std::path::Path;

@@ -1,7 +1,7 @@
 //! Sharp edges and vertices, boundary rules and holes: closed forms, and one way of computing against another.
 //! (tests/cpp compares with OpenSubdiv.)
 
-mod common;
+use crate::common;
 
 use glam::DVec3;
 use proptest::prelude::*;

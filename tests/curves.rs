@@ -1,7 +1,7 @@
 //! Features along curves that do not follow the edges, on flat sheets: the figures of a study
 //! (docs/linear-features.md, section 6) are the bar.
 
-mod common;
+use crate::common;
 
 use glam::DVec3;
 use std::fmt::Write;

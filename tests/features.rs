@@ -3,7 +3,7 @@
 //! The limit surface is looked at through five levels of refinement with every vertex moved to its limit, so that
 //! nothing here depends on how the library measures.
 
-mod common;
+use crate::common;
 
 use glam::DVec3;
 use std::path::PathBuf;

@@ -1,8 +1,7 @@
 //! Depth-0 insertion on curved sheets: the study of docs/optimisation.md. The bounds are a prototype's figures (written
 //! independently, with its own evaluator), which the library is to stay below.
 
-#[path = "common/curved_sheet.rs"]
-mod curved_sheet;
+use crate::common::curved_sheet;
 
 use curved_sheet::{Base, Case, Pattern, WIDTH, measure};
 use welt::optimise::Method;

@@ -1,6 +1,6 @@
 //! `include/welt.h`: up to date, C89 and C++, and exactly the functions that the shared library exports.
 //!
-//! `WELT_UPDATE_HEADER=1 cargo test --test header` writes the header anew.
+//! `WELT_UPDATE_HEADER=1 cargo test --test all header` writes the header anew.
 
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
@@ -74,7 +74,7 @@ fn header_is_up_to_date() {
     let committed = std::fs::read_to_string(header_path()).unwrap();
     assert!(
         committed == generated,
-        "include/welt.h is out of date: run WELT_UPDATE_HEADER=1 cargo test --test header"
+        "include/welt.h is out of date: run WELT_UPDATE_HEADER=1 cargo test --test all header"
     );
 }
 

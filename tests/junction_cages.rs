@@ -1,7 +1,7 @@
 //! Marks on real cages as nobody would set them: random edges with one to five lines, parity lines among them. Whatever
 //! meets, the mesh is valid, the result the same each time, and what no pattern fits is said.
 
-mod common;
+use crate::common;
 
 use std::collections::BTreeMap;
 use welt::feature::{self, Options, Request};

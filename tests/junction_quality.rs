@@ -1,10 +1,8 @@
 //! Limit surfaces of junctions on flat sheets against their ideal shapes: at least as good as the measured figures of
 //! docs/junctions.md, section 1 (a prototype's, written before these rules).
 
-#[path = "common/junction_cases.rs"]
-mod junction_cases;
-#[path = "common/sheet.rs"]
-mod sheet;
+use crate::common::junction_cases;
+use crate::common::sheet;
 
 use glam::DVec2;
 use junction_cases::{CENTRE, Case, DEPTH, cases, flat, piped_cases};

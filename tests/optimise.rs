@@ -1,6 +1,6 @@
 //! The fit to a frozen surface, on meshes whose control points were pushed off it.
 
-mod common;
+use crate::common;
 
 use glam::DVec3;
 use std::path::Path;

@@ -1,9 +1,8 @@
 //! Grooves round every ring of the real cages: valid, sparse, deterministic, true to size; and at depth 0, how much
 //! closer the fit brings the surface to what it was.
 
-mod common;
-#[path = "common/rings.rs"]
-mod rings;
+use crate::common;
+use crate::common::rings;
 
 use rings::{Marked, crossing, crossing_pairs, rings, tees};
 use welt::feature::{self, Options, Report, Request};

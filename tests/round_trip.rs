@@ -1,6 +1,6 @@
 //! Writing and reading again keeps everything; a second reader agrees.
 
-mod common;
+use crate::common;
 
 use glam::{DVec2, DVec3};
 use proptest::prelude::*;

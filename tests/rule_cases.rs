@@ -1,6 +1,6 @@
 //! The before/after cases of the rules in `rules/`, and what is said about cases that are wrong.
 
-mod common;
+use crate::common;
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};

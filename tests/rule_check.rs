@@ -1,6 +1,6 @@
 //! `welt rules check`: warnings, and what the static check knows of scripts; drawings of rules.
 
-mod common;
+use crate::common;
 
 use std::path::Path;
 use std::process::Command;

@@ -1,6 +1,6 @@
 //! Hostile and odd files: each ends in a clean mesh or in a message that names the place and the remedy.
 
-mod common;
+use crate::common;
 
 use welt::io::{self, Format, IgnoredKind, Import, ImportError, ImportOptions};
 

@@ -1,6 +1,6 @@
 //! Evaluation of the limit surface against an independent naive subdivision, closed forms and finite differences.
 
-mod common;
+use crate::common;
 
 use glam::DVec3;
 use std::collections::HashMap;

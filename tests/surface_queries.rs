@@ -1,6 +1,6 @@
 //! Closest points and line hits of a frozen limit surface against dense sampling, parity and closed forms.
 
-mod common;
+use crate::common;
 
 use glam::{DVec2, DVec3};
 use std::path::Path;

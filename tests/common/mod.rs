@@ -1,8 +1,12 @@
 //! What several integration tests share.
 
+pub mod curved_sheet;
+pub mod junction_cases;
+pub mod rings;
+pub mod sheet;
+
 use std::path::PathBuf;
 
-#[allow(dead_code, reason = "not every test that shares this module reads them")]
 /// The folder of test meshes beside the project; `None`, and a line on standard output, where it is absent.
 pub fn shared_data() -> Option<PathBuf> {
     let folder = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../shared/data");
@@ -14,7 +18,6 @@ pub fn shared_data() -> Option<PathBuf> {
 }
 
 /// The content of a test mesh, unpacked when it ends with `.gz`.
-#[allow(dead_code, reason = "not every test that shares this module reads files")]
 pub fn content(path: &std::path::Path) -> Vec<u8> {
     let bytes = std::fs::read(path).expect("a file of the catalogue is readable");
     if path.extension().is_none_or(|extension| extension != "gz") {
@@ -27,13 +30,11 @@ pub fn content(path: &std::path::Path) -> Vec<u8> {
 }
 
 /// The control mesh in a file of `../shared/data` or of `tests/data`.
-#[allow(dead_code, reason = "not every test that shares this module reads files")]
 pub fn load(path: &std::path::Path) -> welt::mesh::Mesh {
     welt::io::import(path, &welt::io::ImportOptions::default()).expect("a clean mesh").mesh
 }
 
 /// The `.obj` files of one folder of `../shared/data` that the kernel can hold, by name.
-#[allow(dead_code, reason = "not every test that shares this module reads files")]
 pub fn clean_cages(data: &std::path::Path, folder: &str) -> Vec<(String, welt::mesh::Mesh)> {
     let mut paths: Vec<PathBuf> = std::fs::read_dir(data.join(folder))
         .expect("a folder of the catalogue")
@@ -51,7 +52,6 @@ pub fn clean_cages(data: &std::path::Path, folder: &str) -> Vec<(String, welt::m
 }
 
 /// The rule files of the project that are sets of their own, not parts that another file includes.
-#[allow(dead_code, reason = "not every test that shares this module reads rules")]
 pub fn rule_sets() -> Vec<PathBuf> {
     let mut files: Vec<(PathBuf, String)> =
         std::fs::read_dir(PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("rules"))
@@ -68,7 +68,6 @@ pub fn rule_sets() -> Vec<PathBuf> {
 }
 
 /// A flat sheet of `side` x `side` unit cells; vertex (i, j) lies at (i, j, 0) and is number (side + 1) j + i.
-#[allow(dead_code, reason = "not every test that shares this module uses sheets")]
 pub fn flat_sheet(side: u32) -> welt::mesh::Mesh {
     let count = side + 1;
     let positions = (0..count * count)

@@ -5,15 +5,13 @@
 //! Cases come from fixed seeds; a failing one is printed with the least marks that still fail. `WELT_CASES=N` runs N
 //! cases per property, `WELT_SEED=N` begins with seed N.
 
-#[path = "../common/mod.rs"]
-mod common;
-
 mod case;
 mod checks;
 mod random;
 mod renumber;
 mod routes;
 
+use crate::common;
 use case::{Case, Model};
 use random::Random;
 use std::panic::{AssertUnwindSafe, catch_unwind};
