@@ -4,6 +4,7 @@
 //!
 //!     cargo run --release --example curved_sheets
 
+#[allow(dead_code, reason = "shared with the tests")]
 #[path = "../tests/common/curved_sheet.rs"]
 mod curved_sheet;
 

@@ -6,10 +6,10 @@
 //! reads `../shared/data` (or `data=FOLDER`); `every=N` takes every Nth case, `faces=N` cages of at most N faces, and `list`
 //! prints every case too.
 
+#[allow(dead_code, reason = "shared with the tests")]
 #[path = "../tests/common/mod.rs"]
 mod common;
-#[path = "../tests/common/rings.rs"]
-mod rings;
+use common::rings;
 
 use rings::{Marked, crossing, crossing_pairs, rings as rings_of, tees};
 use std::path::PathBuf;
