@@ -7,6 +7,7 @@ use super::failure::{Failure, Place};
 use super::status::WELT_ERROR_MESH;
 use crate::fault;
 use crate::io::Limits;
+use crate::memory;
 use crate::mesh::{Mesh, Polygons, VertexId};
 use glam::DVec3;
 
@@ -70,7 +71,7 @@ pub(super) unsafe fn mesh_of<'a>(mesh: *const WeltMesh) -> Result<&'a Mesh, Fail
 ///
 /// The arrays are copied. Fails with WELT_ERROR_MESH where the polygons are no surface (an edge with three faces, fans of
 /// faces that meet in a vertex only, neighbours that are inside out to each other, ...): each place of the error is one
-/// defect; with WELT_ERROR_TOO_LARGE beyond the default limits of welt_import_options. Since: 0.1.
+/// defect; with WELT_ERROR_TOO_LARGE beyond the default limits of welt_import_options; with WELT_ERROR_MEMORY. Since: 0.1.
 #[unsafe(no_mangle)]
 #[allow(clippy::too_many_arguments)]
 pub unsafe extern "C" fn welt_mesh_create(
@@ -97,8 +98,8 @@ pub unsafe extern "C" fn welt_mesh_create(
         };
         let polygons = Polygons {
             positions,
-            face_sizes: sizes.to_vec(),
-            face_vertices: vertices.to_vec(),
+            face_sizes: memory::copied(sizes)?,
+            face_vertices: memory::copied(vertices)?,
             ..Polygons::default()
         };
         Limits::default().check(&polygons)?;

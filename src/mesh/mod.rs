@@ -106,6 +106,11 @@ impl Mesh {
         self.faces.len()
     }
 
+    /// Number of vertices, edges, faces and boundary loops that exist, together.
+    pub fn element_count(&self) -> usize {
+        self.vertices.len() + self.half_edges.len() / 2 + self.faces.len() + self.loops.len() - self.holes
+    }
+
     /// Number of boundary loop ids in use, removed ones included.
     pub fn loop_bound(&self) -> usize {
         self.loops.len()
