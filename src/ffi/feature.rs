@@ -14,7 +14,7 @@ use crate::feature::{self, Profile, Request};
 use crate::grammar::Limits;
 use crate::job::Job;
 use crate::mark::parity;
-use crate::mesh::VertexId;
+use crate::mesh::{MOST_COORDINATE, VertexId};
 use crate::optimise::Method;
 use crate::surface::{SAMPLES, Sampling};
 use std::collections::BTreeSet;
@@ -327,6 +327,9 @@ pub unsafe extern "C" fn welt_mesh_displace(
             }
             if !height.is_finite() {
                 return Err(Failure::argument(format!("the height of vertex {v} is not a finite number")));
+            }
+            if height.abs() > MOST_COORDINATE {
+                return Err(Failure::argument(format!("the height of vertex {v} is beyond 1e50")));
             }
         }
         let heights: Vec<(VertexId, f64)> =

@@ -8,7 +8,7 @@ use super::status::WELT_ERROR_MESH;
 use crate::fault;
 use crate::io::Limits;
 use crate::memory;
-use crate::mesh::{Mesh, Polygons, VertexId};
+use crate::mesh::{Mesh, Polygons, VertexId, is_place};
 use glam::DVec3;
 
 /// A control mesh. Its vertices, edges and faces are numbered from 0 without gaps.
@@ -234,7 +234,7 @@ pub unsafe extern "C" fn welt_mesh_set_positions(
                 "vertex_count is {vertex_count}; the mesh has {expected} vertices"
             )));
         }
-        check_finite(&positions)?;
+        check_places(&positions)?;
         mesh.change(|mesh| {
             for (id, &position) in positions.iter().enumerate() {
                 mesh.set_position(VertexId(id as u32), position);
@@ -247,18 +247,19 @@ pub unsafe extern "C" fn welt_mesh_set_positions(
     unsafe { boundary(error, body) }
 }
 
-fn check_finite(positions: &[DVec3]) -> Result<(), Failure> {
-    const MESSAGE: &str = "a coordinate is not a finite number";
+fn check_places(positions: &[DVec3]) -> Result<(), Failure> {
+    const MESSAGE: &str = "a coordinate is not a number from -1e50 to 1e50";
     let places: Vec<Place> = positions
         .iter()
         .enumerate()
-        .filter(|(_, position)| !position.is_finite())
+        .filter(|(_, position)| !is_place(**position))
         .map(|(id, _)| Place::vertex(id as u32, MESSAGE))
         .collect();
     if places.is_empty() {
         return Ok(());
     }
-    let message = format!("{} vertices have a coordinate that is not a finite number", places.len());
+    let message =
+        format!("{} vertices have a coordinate that is not a number from -1e50 to 1e50", places.len());
     Err(Failure { code: WELT_ERROR_MESH, message, places })
 }
 

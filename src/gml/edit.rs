@@ -3,7 +3,7 @@
 use super::kind::Kinds;
 use super::machine::{Execution, Fault, error};
 use super::value::Value;
-use crate::mesh::{Corner, EulerError, HalfEdgeId, Mesh, Node, VertexId};
+use crate::mesh::{Corner, EulerError, HalfEdgeId, Mesh, Node, VertexId, is_place};
 use glam::DVec3;
 
 /// Sharpness from which on an edge or a vertex is infinitely sharp (OpenSubdiv's scale).
@@ -97,7 +97,7 @@ impl Execution<'_, '_, '_> {
     }
 
     fn place_vertex(&mut self, v: VertexId, p: DVec3) -> Result<(), Fault> {
-        if !p.is_finite() {
+        if !is_place(p) {
             return self.euler(Err(EulerError::NotFinite));
         }
         self.environment.budget.edit(1)?;

@@ -197,7 +197,7 @@ fn check_arrays(polygons: &Polygons) -> Result<Vec<Defect>, OutOfMemory> {
     }
     let mut defects = Vec::new();
     for (vertex, position) in polygons.positions.iter().enumerate() {
-        if !position.is_finite() {
+        if !super::is_place(*position) {
             defects.push(Defect::NotFinite { vertex: vertex as u32 });
         }
     }

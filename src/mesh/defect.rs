@@ -46,7 +46,7 @@ pub enum Defect {
         /// The vertex.
         vertex: u32,
     },
-    /// A vertex with a coordinate that is not a finite number.
+    /// A vertex with a coordinate that is not finite or beyond [`MOST_COORDINATE`](super::MOST_COORDINATE).
     NotFinite {
         /// The vertex.
         vertex: u32,
@@ -125,7 +125,7 @@ impl fmt::Display for Defect {
                 write!(f, "face {face} names vertex {vertex} twice")
             }
             Self::NotFinite { vertex } => {
-                write!(f, "vertex {vertex} has a coordinate that is not a finite number")
+                write!(f, "vertex {vertex} has a coordinate that is not a number from -1e50 to 1e50")
             }
             Self::EdgeWithManyFaces { edge, faces } => write!(
                 f,

@@ -90,6 +90,14 @@ pub struct Mesh {
     log: Log,
 }
 
+/// Vertices lie between minus this number and this number in every coordinate, so that products of lengths do not overflow.
+pub const MOST_COORDINATE: f64 = 1e50;
+
+/// True for a place where a vertex may lie.
+pub fn is_place(place: DVec3) -> bool {
+    place.to_array().iter().all(|x| x.abs() <= MOST_COORDINATE)
+}
+
 impl Mesh {
     /// Number of vertex ids in use, removed ones included: ids are below it.
     pub fn vertex_bound(&self) -> usize {

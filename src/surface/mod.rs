@@ -88,12 +88,12 @@ fn unwatched(_: f64) -> Result<(), OutOfMemory> {
 }
 
 /// The real ones of `faces`, ascending, each once.
-fn existing(mesh: &Mesh, faces: &[FaceId]) -> Vec<FaceId> {
-    let mut faces: Vec<FaceId> =
-        faces.iter().copied().filter(|&f| !f.is_boundary() && mesh.has_face(f)).collect();
+fn existing(mesh: &Mesh, faces: &[FaceId]) -> Result<Vec<FaceId>, OutOfMemory> {
+    let real = faces.iter().copied().filter(|&f| !f.is_boundary() && mesh.has_face(f));
+    let mut faces = memory::collected(faces.len(), real)?;
     faces.sort_unstable();
     faces.dedup();
-    faces
+    Ok(faces)
 }
 
 impl LimitSurface {
@@ -108,7 +108,9 @@ impl LimitSurface {
     /// passed over. Time and
     /// memory follow the number of these faces and their neighbours, not the mesh.
     pub fn around(mesh: &Mesh, faces: &[FaceId]) -> Self {
-        freeze::freeze(mesh, &existing(mesh, faces), unwatched).unwrap_or_else(|error| memory::give_up(error))
+        existing(mesh, faces)
+            .and_then(|faces| freeze::freeze(mesh, &faces, unwatched))
+            .unwrap_or_else(|error| memory::give_up(error))
     }
 
     /// [`around`](Self::around) under the eyes of a job.
@@ -116,7 +118,7 @@ impl LimitSurface {
     /// # Errors
     /// [`FreezeError`].
     pub fn around_with(mesh: &Mesh, faces: &[FaceId], job: &Job) -> Result<Self, FreezeError> {
-        freeze::freeze(mesh, &existing(mesh, faces), |done| Ok(job.step("freeze", done)?))
+        freeze::freeze(mesh, &existing(mesh, faces)?, |done| Ok(job.step("freeze", done)?))
     }
 
     /// Frozen faces, ascending.

@@ -7,7 +7,7 @@ use crate::io::report::{IgnoredKind, ImportReport};
 use crate::io::source::{Lines, Source};
 use crate::io::text::{Cursor, Fault, Place, shown};
 use crate::memory;
-use crate::mesh::Polygons;
+use crate::mesh::{MOST_COORDINATE, Polygons};
 use glam::{DVec2, DVec3};
 use rustc_hash::FxHashSet;
 
@@ -162,13 +162,17 @@ impl<'a> Reader<'a> {
     }
 
     fn coordinate(&mut self) -> Result<f64> {
+        const RANGE: &str = "scale the model; coordinates lie between -1e50 and 1e50";
         const REMEDY: &str = "write 'v x y z' with three finite numbers";
         if !self.text.next_token_on_line() {
             return Err(self.fault("a vertex with fewer than three coordinates", REMEDY));
         }
         let place = self.text.place();
         match self.text.number() {
-            Ok(value) if value.is_finite() => Ok(value),
+            Ok(value) if value.abs() <= MOST_COORDINATE => Ok(value),
+            Ok(value) if value.is_finite() => {
+                Err(fault_at(place, format!("the coordinate {value:e} is out of range"), RANGE))
+            }
             Ok(value) => {
                 Err(fault_at(place, format!("the coordinate {value} is not a finite number"), REMEDY))
             }

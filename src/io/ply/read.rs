@@ -8,7 +8,7 @@ use crate::io::report::{IgnoredKind, ImportReport};
 use crate::io::source::{Lines, Source};
 use crate::io::text::{Cursor, Fault, Place};
 use crate::memory::{self, OutOfMemory};
-use crate::mesh::Polygons;
+use crate::mesh::{MOST_COORDINATE, Polygons};
 use glam::DVec3;
 
 const REMEDY: &str = "check that the file is whole, or export it again";
@@ -75,9 +75,13 @@ impl Reader<'_> {
                 };
                 let place = self.place();
                 position[axis] = match self.body.scalar(property.scalar) {
-                    Ok(value) if value.is_finite() => value,
+                    Ok(value) if value.abs() <= MOST_COORDINATE => value,
                     Ok(value) => {
-                        let message = format!("the coordinate {value} is not a finite number");
+                        let message = if value.is_finite() {
+                            format!("the coordinate {value:e} is out of range, -1e50 to 1e50")
+                        } else {
+                            format!("the coordinate {value} is not a finite number")
+                        };
                         return Err(self.error(element, number, place, message));
                     }
                     Err(message) => return Err(self.error(element, number, place, message)),
