@@ -3,13 +3,16 @@
 use std::time::Duration;
 use welt::{grammar, io};
 
+/// Sets one limit.
+type Set<L> = fn(&mut L, u64);
+
 /// A limit of files and its value.
 #[derive(Clone, Copy)]
-pub struct Import(fn(&mut io::Limits, u64), u64);
+pub struct Import(Set<io::Limits>, u64);
 
 /// A limit of rules and its value.
 #[derive(Clone, Copy)]
-pub struct Rules(fn(&mut grammar::Limits, u64), u64);
+pub struct Rules(Set<grammar::Limits>, u64);
 
 impl Import {
     pub fn set(&self, limits: &mut io::Limits) {
@@ -23,14 +26,14 @@ impl Rules {
     }
 }
 
-const IMPORT: [(&str, fn(&mut io::Limits, u64)); 4] = [
+const IMPORT: [(&str, Set<io::Limits>); 4] = [
     ("vertices", |limits, most| limits.max_vertices = most),
     ("faces", |limits, most| limits.max_faces = most),
     ("face-vertices", |limits, most| limits.max_arity = most),
     ("vertex-faces", |limits, most| limits.max_valence = most),
 ];
 
-const RULES: [(&str, fn(&mut grammar::Limits, u64)); 7] = [
+const RULES: [(&str, Set<grammar::Limits>); 7] = [
     ("applications", |limits, most| limits.applications = most),
     ("steps", |limits, most| limits.steps = most),
     ("changes", |limits, most| limits.edits = most),
