@@ -120,6 +120,11 @@ extern "C" {
 #define WELT_ERROR_RULE -10
 
 /*
+ There is no memory for a large list; the message says how much was asked for. Nothing was changed.
+ */
+#define WELT_ERROR_MEMORY -11
+
+/*
  The place is no element of a mesh: the input as a whole, or a place in a text.
  */
 #define WELT_PLACE_WHOLE 0
@@ -367,6 +372,35 @@ typedef struct {
      are kept and the report lists them. Default 0.
      */
     uint32_t strict;
+    /*
+     Most procedures and loops of a script of the rules inside one another. Default 1000.
+     */
+    uint32_t max_script_depth;
+    /*
+     Most applications of rules. This and what follows is for each run of the rules; correcting widths and depths takes
+     several. Default 10 million.
+     */
+    uint64_t max_applications;
+    /*
+     Most steps of scripts and of the search for matches. Default 10^9.
+     */
+    uint64_t max_steps;
+    /*
+     Most changes of the mesh; bounds the memory, about 150 bytes each. Default 20 million.
+     */
+    uint64_t max_changes;
+    /*
+     The mesh may come to have at most this many times the vertices, edges and faces that it has, together, default 16,
+     */
+    uint64_t max_growth;
+    /*
+     and this many more. Default 1 million.
+     */
+    uint64_t max_extra_elements;
+    /*
+     Most seconds, at least 0, infinite for no bound. Default 60.
+     */
+    double max_seconds;
 } welt_feature_options;
 
 /*
@@ -647,7 +681,7 @@ const char *welt_report_json(const welt_report *report);
 
  The arrays are copied. Fails with WELT_ERROR_MESH where the polygons are no surface (an edge with three faces, fans of
  faces that meet in a vertex only, neighbours that are inside out to each other, ...): each place of the error is one
- defect; with WELT_ERROR_TOO_LARGE beyond the default limits of welt_import_options. Since: 0.1.
+ defect; with WELT_ERROR_TOO_LARGE beyond the default limits of welt_import_options; with WELT_ERROR_MEMORY. Since: 0.1.
  */
 WELT_API
 int32_t welt_mesh_create(const uint32_t *face_sizes,
@@ -935,7 +969,8 @@ int32_t welt_mesh_limit_normals(const welt_mesh *mesh,
  refinement: receives the handle; free it with welt_refinement_free.
 
  Fails with WELT_ERROR_TOO_LARGE before anything is computed where a level would have more elements than 31 bits can
- number, and with WELT_ERROR_CANCELLED. Since: 0.1.
+ number, with WELT_ERROR_MEMORY, and with WELT_ERROR_CANCELLED. Memory: about 100 bytes for each face of the last level.
+ Since: 0.1.
  */
 WELT_API
 int32_t welt_refinement_create(const welt_mesh *mesh,
@@ -1304,7 +1339,8 @@ int32_t welt_feature_list(welt_report **list,
  warnings. Free it with welt_report_free.
 
  Fails with WELT_ERROR_ARGUMENT (an unknown feature or setting, a selection of another mesh, a width that an edge cannot
- take: the place is the edge), WELT_ERROR_FILE, WELT_ERROR_RULE (also, when strict, for marks that no rule handles),
+ take: the place is the edge), WELT_ERROR_FILE, WELT_ERROR_RULE (also for rules that go beyond a limit of the options and, when
+ strict, for marks that no rule handles),
  WELT_ERROR_CANCELLED; the mesh is as it was before then. Since: 0.1.
  */
 WELT_API

@@ -18,6 +18,7 @@ pub mod grammar;
 pub mod io;
 pub mod job;
 pub mod mark;
+pub mod memory;
 pub mod mesh;
 pub mod optimise;
 pub mod picture;

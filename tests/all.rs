@@ -1,6 +1,6 @@
 //! The integration tests, one module per file, in one program: it is built once and its tests share both cores.
-//! `cargo test --test all features::` runs those of `tests/features.rs`. What counts allocations stands apart
-//! (`tests/bad_inputs.rs`).
+//! `cargo test --test all features::` runs those of `tests/features.rs`. What counts or refuses allocations
+//! stands apart (`tests/bad_inputs.rs`, `tests/memory.rs`).
 
 mod abi_page;
 mod abi_snapshot;
@@ -10,6 +10,7 @@ mod common;
 mod creases;
 mod curvature;
 mod curves;
+mod extremes;
 mod features;
 mod fit_study;
 mod flat_sheets;
@@ -19,6 +20,7 @@ mod hostile;
 mod junction_cages;
 mod junction_quality;
 mod junction_rules;
+mod limits;
 mod linear_rules;
 mod loop_surface;
 mod mesh;
@@ -50,7 +52,7 @@ fn every_file_is_a_module() {
         let Some(module) = name.strip_suffix(".rs") else { continue };
         let named = include_str!("all.rs").contains(&format!("\nmod {module};\n"));
         assert!(
-            named || ["all", "bad_inputs"].contains(&module),
+            named || ["all", "bad_inputs", "memory"].contains(&module),
             "tests/{name} is not named in tests/all.rs"
         );
     }

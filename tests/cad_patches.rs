@@ -238,7 +238,7 @@ fn nothing_and_cancelled() {
     let job = Job::new();
     job.cancel();
     let faces: Vec<FaceId> = cube().faces().collect();
-    assert_eq!(Patches::new(&cube(), &faces, &PatchOptions::default(), &job).err(), Some(Cancelled));
+    assert_eq!(Patches::new(&cube(), &faces, &PatchOptions::default(), &job).err(), Some(Cancelled.into()));
     let patch = &patches(&cube(), &PatchOptions::default()).patches[0];
     assert!(patch.evaluate(f64::NAN, 0.0).is_none());
     assert_eq!(

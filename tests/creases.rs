@@ -154,16 +154,18 @@ fn limits_are_the_same_on_every_level_and_at_patch_corners() {
         let refined = Refinement::new(&mesh, 2).expect("two levels");
         let control = refined.control_positions(&mesh);
         for level in 1..=2 {
-            let positions = refined.positions(level, &control);
-            let limits = refined.limit_positions(level, &positions).expect("quads");
+            let positions = refined.positions(level, &control).expect("memory");
+            let limits = refined.limit_positions(level, &positions).expect("memory").expect("quads");
             for (v, limit) in mesh.vertices().zip(&limits) {
                 let expected = limit_position(&mesh, v);
                 assert!(limit.distance(expected) < 1e-13 * size, "{name} level {level} vertex {}", v.0);
                 sharp += usize::from(mesh.has_sharpness());
             }
         }
-        let finer =
-            Mesh::from_polygons(&refined.polygons(1, refined.positions(1, &control))).expect("a level");
+        let finer = Mesh::from_polygons(
+            &refined.polygons(1, refined.positions(1, &control).expect("memory")).expect("memory"),
+        )
+        .expect("a level");
         for v in mesh.vertices() {
             let off = limit_position(&finer, v).distance(limit_position(&mesh, v)) / size;
             assert!(off < 1e-13, "{name} vertex {}: {off:e}", v.0);
@@ -340,8 +342,8 @@ proptest! {
         let creasing = if options.1 { Creasing::Chaikin } else { Creasing::Uniform };
         mesh.set_subdivision(SubdivisionOptions { boundary, creasing });
         let refined = Refinement::new(&mesh, 3).expect("levels");
-        let positions = refined.positions(3, &refined.control_positions(&mesh));
-        let limits = refined.limit_positions(3, &positions).expect("quads");
+        let positions = refined.positions(3, &refined.control_positions(&mesh)).expect("memory");
+        let limits = refined.limit_positions(3, &positions).expect("memory").expect("quads");
         for (v, limit) in mesh.vertices().zip(&limits) {
             prop_assert!(limit.distance(limit_position(&mesh, v)) < 1e-6, "{v:?} {limit} {}", limit_position(&mesh, v));
         }

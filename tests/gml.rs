@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 use proptest::prelude::*;
-use welt::gml::{Budget, Environment, Fault, Machine, Scope, Source, Stop, Strings, compile};
+use welt::gml::{Allowance, Budget, Environment, Fault, Machine, Scope, Source, Stop, Strings, compile};
 use welt::mesh::{Domain, Mesh, Polygons, VertexId};
 
 /// A cube of side 2 round the origin, its faces seen from outside counter-clockwise.
@@ -26,8 +26,9 @@ fn run_on(mesh: &mut Mesh, text: &str) -> Result<String, String> {
     let program = compile(&source, &scope, &mut strings).map_err(|errors| {
         errors.iter().map(|e| format!("{} [{}]", e.message, e.word)).collect::<Vec<_>>().join("; ")
     })?;
+    let allowance = Allowance { steps: 1_000_000, edits: 100_000, elements: 200_000, depth: 1000 };
     let mut machine = Machine::new(&strings);
-    let mut budget = Budget::new(1_000_000, 100_000, None, None);
+    let mut budget = Budget::new(allowance, None, None);
     let mut environment =
         Environment { mesh, nodes: &[e.0, 7], parameters: &[0.25], examples: None, budget: &mut budget };
     machine.run(&program, &mut environment).map_err(|failure| match failure.fault {
@@ -153,7 +154,10 @@ fn control_words() {
     fails("[ 1 ] { pop } map", "the procedure of this map must leave one value [}]");
     fails("0 0 5 { } for", "a step of 0 never gets from 0 to 5 [for]");
     fails("{ 1 } loop", "too many steps");
-    fails("/f { f } def f", "more than 1000 procedures and loops inside one another [f]");
+    fails(
+        "/f { f } def f",
+        "more than 1000 procedures and loops inside one another; end the recursion, or raise the limit [f]",
+    );
     fails(
         "5 { pop 1 throw } { } catch",
         "a procedure under `catch` took values that were on the stack before it [throw]",

@@ -178,6 +178,7 @@ fn constants_keep_their_numbers() {
         ("WELT_ERROR_FILE", "-8"),
         ("WELT_ERROR_SYNTAX", "-9"),
         ("WELT_ERROR_RULE", "-10"),
+        ("WELT_ERROR_MEMORY", "-11"),
         ("WELT_PLACE_WHOLE", "0"),
         ("WELT_PLACE_VERTEX", "1"),
         ("WELT_PLACE_EDGE", "2"),

@@ -1,7 +1,6 @@
 //! Loop subdivision: closed forms, and limits against those of finer levels. (tests/cpp compares with OpenSubdiv and
 //! OpenMesh.)
 
-
 use glam::DVec3;
 use welt::mesh::{FaceId, Mesh, Polygons, VertexId};
 use welt::subdivision::{LoopSurface, RefineError};

@@ -6,7 +6,7 @@ use glam::{DVec2, DVec3};
 use proptest::prelude::*;
 use std::path::{Path, PathBuf};
 use welt::io::{self, Format, ImportOptions, obj, ply};
-use welt::mesh::{BoundaryRule, Creasing, FaceSet, Mesh, Polygons, SubdivisionOptions};
+use welt::mesh::{BoundaryRule, Creasing, FaceSet, MOST_COORDINATE, Mesh, Polygons, SubdivisionOptions};
 
 fn read(format: Format, bytes: &[u8]) -> io::Source {
     io::read_bytes("written", format, bytes, &ImportOptions::default()).expect("what was written can be read")
@@ -121,7 +121,7 @@ fn everything() -> Polygons {
         positions: [
             [0.1, -0.0, 1e-300],
             [1.0 / 3.0, 0.0, f64::MIN_POSITIVE],
-            [1e300, 1.5, 0.3],
+            [1e50, 1.5, 0.3],
             [-7.25, 1e16, 123456789.12345679],
             [2.0, 3.0, 4.0],
             [9.0, 9.0, 9.0],
@@ -250,7 +250,7 @@ fn a_file_is_replaced_whole_or_not_at_all() {
 
 proptest! {
     #[test]
-    fn coordinates_are_kept_to_the_bit(values in prop::collection::vec(any::<f64>().prop_filter("finite", |x| x.is_finite()), 3..30)) {
+    fn coordinates_are_kept_to_the_bit(values in prop::collection::vec(any::<f64>().prop_filter("in range", |x| x.abs() <= MOST_COORDINATE), 3..30)) {
         let positions: Vec<DVec3> = values.chunks_exact(3).map(DVec3::from_slice).collect();
         let polygons = Polygons { positions, ..Polygons::default() };
         prop_assert_eq!(bits(&read(Format::Obj, &write_obj(&polygons)).polygons.positions), bits(&polygons.positions));

@@ -773,7 +773,7 @@ fn soup(text: &str) {
     let mut mesh = grid(2);
     mark(&mut mesh, 0, 1, "x", Value::Number(1.0));
     let before = mesh.to_polygons();
-    let limits = Limits { applications: 50, steps: 20_000, edits: 20_000, time: None };
+    let limits = Limits { applications: 50, steps: 20_000, edits: 20_000, time: None, ..Limits::default() };
     let result = grammar::run(&set, &mut mesh, &RunOptions { limits, ..RunOptions::default() });
     mesh.validate().expect("a mesh");
     match result {

@@ -11,7 +11,7 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::sync::Arc;
 use welt::feature::{Options, ProfileError, Request, RequestError};
-use welt::grammar::{RuleSet, Trace, Tracer};
+use welt::grammar::{Limits, RuleSet, Trace, Tracer};
 use welt::io;
 use welt::mark::{Selection, Selector, parity};
 use welt::optimise::Method;
@@ -111,6 +111,8 @@ fn request(arguments: &Apply) -> Result<Request, Failure> {
 }
 
 fn options(arguments: &Apply) -> Result<Options, Failure> {
+    let mut limits = Limits::default();
+    arguments.rule_limits.iter().for_each(|limit| limit.set(&mut limits));
     Ok(Options {
         method: match arguments.optimise {
             FitMethod::None => Method::None,
@@ -125,6 +127,7 @@ fn options(arguments: &Apply) -> Result<Options, Failure> {
             Parity::Local => parity::Mode::Local,
         },
         strict: arguments.strict,
+        limits,
         samples: if arguments.no_deviation { 0 } else { SAMPLES },
         threads: arguments.threads,
         tracer: tracer(arguments)?,

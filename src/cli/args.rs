@@ -44,6 +44,9 @@ pub struct Import {
     /// What becomes of the boundary; what the file says, or edge, without it
     #[arg(long, value_enum, value_name = "RULE")]
     pub boundary: Option<Boundary>,
+    /// Sizes beyond which a file is refused: vertices, faces (of the file; 268435456 each), face-vertices (of one face; 1024), vertex-faces (at one vertex; 1024)
+    #[arg(long = "limit", value_name = "NAME=COUNT", value_parser = super::limits::import)]
+    pub limits: Vec<super::limits::Import>,
 }
 
 /// The names of boundary rules.
@@ -69,7 +72,9 @@ impl From<Boundary> for BoundaryRule {
 
 impl Import {
     pub fn options(&self) -> ImportOptions {
-        ImportOptions { repair: self.repair, weld: self.weld, limits: Limits::default() }
+        let mut limits = Limits::default();
+        self.limits.iter().for_each(|limit| limit.set(&mut limits));
+        ImportOptions { repair: self.repair, weld: self.weld, limits }
     }
 }
 
@@ -137,6 +142,9 @@ pub struct Apply {
     /// Fail where no rule handles a mark, instead of keeping the mark and applying the rest
     #[arg(long)]
     pub strict: bool,
+    /// What a run of the rules may cost: applications, steps, changes, depth (of scripts), growth (factor of the elements of the mesh), extra (elements beyond that), seconds
+    #[arg(long = "rule-limit", value_name = "NAME=COUNT", value_parser = super::limits::rules)]
+    pub rule_limits: Vec<super::limits::Rules>,
     /// Write a report as JSON
     #[arg(long, value_name = "FILE")]
     pub report: Option<PathBuf>,

@@ -8,6 +8,7 @@ use super::output::print;
 use glam::DVec3;
 use std::process::ExitCode;
 use welt::io::{self, Format};
+use welt::memory::OutOfMemory;
 use welt::mesh::{Mesh, Polygons};
 use welt::subdivision::{Refinement, limit_points, limit_positions};
 
@@ -45,7 +46,7 @@ fn limit_mesh(mesh: &Mesh, level: usize) -> Result<Polygons, Failure> {
         // Groups, materials and texture coordinates stay.
         return Ok(Polygons { positions: limit_positions(mesh), ..mesh.to_polygons() });
     }
-    let control = refined_control(&Refinement::new(mesh, level)?, mesh, level);
+    let control = refined_control(&Refinement::new(mesh, level)?, mesh, level)?;
     let positions = limit_positions(&Mesh::from_polygons(&control)?);
     Ok(Polygons { positions, ..control })
 }
@@ -57,7 +58,7 @@ pub fn limit_mesh_with_normals(
     mesh: &Mesh,
     level: usize,
 ) -> Result<(Polygons, Vec<DVec3>), Failure> {
-    let control = refined_control(refinement, mesh, level);
+    let control = refined_control(refinement, mesh, level)?;
     let points = limit_points(&Mesh::from_polygons(&control)?);
     let normals = points.iter().map(|point| point.normal().unwrap_or_default()).collect();
     let positions = points.iter().map(|point| point.position).collect();
@@ -65,7 +66,7 @@ pub fn limit_mesh_with_normals(
 }
 
 /// Level `level` of `mesh`: another control mesh of the same surface.
-fn refined_control(refinement: &Refinement, mesh: &Mesh, level: usize) -> Polygons {
-    let positions = refinement.positions(level, &refinement.control_positions(mesh));
+fn refined_control(refinement: &Refinement, mesh: &Mesh, level: usize) -> Result<Polygons, OutOfMemory> {
+    let positions = refinement.positions(level, &refinement.control_positions(mesh))?;
     refinement.polygons(level, positions)
 }

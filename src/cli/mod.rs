@@ -10,6 +10,7 @@ mod error;
 mod figure;
 mod files;
 mod limit;
+mod limits;
 mod output;
 mod patches;
 mod progress;

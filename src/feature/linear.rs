@@ -186,7 +186,7 @@ impl Run<'_> {
             parameters: self.request.numbers.clone(),
             job: Some(job),
             tracer: self.options.tracer.as_deref(),
-            ..grammar::RunOptions::default()
+            limits: self.options.limits,
         };
         let outcome = grammar::run(&self.request.rules, mesh, &run_options)?;
         let changed = self.changed(mesh, &outcome);

@@ -5,7 +5,9 @@ use super::{Leftover, Length, Profile, ProfileError, SettingError, Unit, WidthEr
 use crate::grammar::{self, RuleSet, Tracer};
 use crate::job::Cancelled;
 use crate::mark::{DEFAULT_KIND, parity};
+use crate::memory::OutOfMemory;
 use crate::optimise::Method;
+use crate::surface::FreezeError;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
@@ -233,6 +235,8 @@ pub struct Options {
     pub samples: usize,
     /// Threads for measuring deviations, 0 for all; the result does not depend on it.
     pub threads: usize,
+    /// What each run of the rules may cost; there are several where widths and depths are corrected.
+    pub limits: grammar::Limits,
     /// Records where rules are applied, or says where to apply them.
     pub tracer: Option<Arc<Tracer>>,
 }
@@ -245,6 +249,7 @@ impl Default for Options {
             strict: false,
             samples: 0,
             threads: 1,
+            limits: grammar::Limits::default(),
             tracer: None,
         }
     }
@@ -316,6 +321,18 @@ pub enum FeatureError {
     /// The caller cancelled.
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
+    /// There is no memory for the surface round the marks.
+    #[error(transparent)]
+    Memory(#[from] OutOfMemory),
+}
+
+impl From<FreezeError> for FeatureError {
+    fn from(error: FreezeError) -> Self {
+        match error {
+            FreezeError::Cancelled(cancelled) => cancelled.into(),
+            FreezeError::Memory(error) => error.into(),
+        }
+    }
 }
 
 fn open_loop(ends: &[(u32, u32)]) -> String {

@@ -2,6 +2,7 @@
 
 use super::failure::Failure;
 use super::status::WELT_ERROR_BUFFER;
+use crate::memory;
 use std::ffi::{CStr, c_char};
 
 fn check<T>(pointer: *const T, name: &str) -> Result<(), Failure> {
@@ -164,7 +165,7 @@ pub(super) unsafe fn points(
 ) -> Result<Vec<glam::DVec3>, Failure> {
     // SAFETY: as for this function.
     let rows = unsafe { Rows::new(pointer, count, 3, stride, name) }?;
-    Ok(rows.range(0..count).map(glam::DVec3::from_slice).collect())
+    Ok(memory::collected(count, rows.range(0..count).map(glam::DVec3::from_slice))?)
 }
 
 /// A place for one result. It is written only by a call that succeeds.

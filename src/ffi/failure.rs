@@ -7,8 +7,10 @@ use crate::grammar::{RulesError, RunError};
 use crate::io::{Excess, ExportError, ImportError};
 use crate::job::Cancelled;
 use crate::mark::{MarkError, SelectorError};
+use crate::memory::OutOfMemory;
 use crate::mesh::{Defect, Defects};
 use crate::subdivision::RefineError;
+use crate::surface::FreezeError;
 
 /// What an error handle is made of.
 #[derive(Debug)]
@@ -69,7 +71,9 @@ impl Place {
 impl From<&Defect> for Place {
     fn from(defect: &Defect) -> Self {
         let location = match *defect {
-            Defect::SizeMismatch { .. } | Defect::TooLarge { .. } => Location::Whole,
+            Defect::SizeMismatch { .. } | Defect::TooLarge { .. } | Defect::NoMemory { .. } => {
+                Location::Whole
+            }
             Defect::TooFewVertices { face, .. }
             | Defect::VertexOutOfRange { face, .. }
             | Defect::RepeatedVertex { face, .. } => Location::Face(face),
@@ -86,6 +90,7 @@ impl From<Defects> for Failure {
     fn from(defects: Defects) -> Self {
         let code = match defects.0.as_slice() {
             [Defect::TooLarge { .. }] => WELT_ERROR_TOO_LARGE,
+            [Defect::NoMemory { .. }] => WELT_ERROR_MEMORY,
             [Defect::SizeMismatch { .. }] => WELT_ERROR_ARGUMENT,
             _ => WELT_ERROR_MESH,
         };
@@ -97,6 +102,7 @@ impl From<Excess> for Failure {
     fn from(excess: Excess) -> Self {
         let message = excess.to_string();
         let location = match excess {
+            Excess::Memory(error) => return error.into(),
             Excess::Whole { .. } => Location::Whole,
             Excess::Arity { face, .. } => Location::Face(face),
             Excess::Valence { vertex, .. } => Location::Vertex(vertex),
@@ -113,6 +119,7 @@ impl From<ImportError> for Failure {
             ImportError::Unreadable { .. } | ImportError::UnknownFormat { .. } => {
                 Self::new(WELT_ERROR_FILE, message)
             }
+            ImportError::Memory { .. } => Self::new(WELT_ERROR_MEMORY, message),
             ImportError::WeldDistance { .. } => Self::argument(message),
             ImportError::Text { file, line, column, message: what, .. } => {
                 let text = Some(TextPlace { file, line, column });
@@ -145,7 +152,26 @@ impl From<ExportError> for Failure {
 
 impl From<RefineError> for Failure {
     fn from(error: RefineError) -> Self {
-        Self::new(WELT_ERROR_TOO_LARGE, error.to_string())
+        let code = match error {
+            RefineError::Memory(_) => WELT_ERROR_MEMORY,
+            RefineError::TooLarge { .. } | RefineError::TooDeep { .. } => WELT_ERROR_TOO_LARGE,
+        };
+        Self::new(code, error.to_string())
+    }
+}
+
+impl From<OutOfMemory> for Failure {
+    fn from(error: OutOfMemory) -> Self {
+        Self::new(WELT_ERROR_MEMORY, error.to_string())
+    }
+}
+
+impl From<FreezeError> for Failure {
+    fn from(error: FreezeError) -> Self {
+        match error {
+            FreezeError::Cancelled(cancelled) => cancelled.into(),
+            FreezeError::Memory(error) => error.into(),
+        }
     }
 }
 
@@ -253,6 +279,7 @@ impl From<FeatureError> for Failure {
             }
             FeatureError::Rules(error) => error.into(),
             FeatureError::Cancelled(cancelled) => cancelled.into(),
+            FeatureError::Memory(error) => error.into(),
             _ => Self::argument(message),
         }
     }

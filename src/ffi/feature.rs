@@ -11,13 +11,15 @@ use super::report::{WeltReport, hand_over};
 use super::rules::WeltRules;
 use super::selection::WeltSelection;
 use crate::feature::{self, Profile, Request};
+use crate::grammar::Limits;
 use crate::job::Job;
 use crate::mark::parity;
-use crate::mesh::VertexId;
+use crate::mesh::{MOST_COORDINATE, VertexId};
 use crate::optimise::Method;
 use crate::surface::{SAMPLES, Sampling};
 use std::collections::BTreeSet;
 use std::ffi::c_char;
+use std::time::Duration;
 
 /// Leave vertices where the rules put them.
 pub const WELT_FIT_NONE: u32 = 0;
@@ -74,16 +76,64 @@ pub struct WeltFeatureOptions {
     /// Not 0: marks that no rule handles are an error, WELT_ERROR_RULE, whose places are the marked edges; else they
     /// are kept and the report lists them. Default 0.
     pub strict: u32,
+    /// Most procedures and loops of a script of the rules inside one another. Default 1000.
+    pub max_script_depth: u32,
+    /// Most applications of rules. This and what follows is for each run of the rules; correcting widths and depths takes
+    /// several. Default 10 million.
+    pub max_applications: u64,
+    /// Most steps of scripts and of the search for matches. Default 10^9.
+    pub max_steps: u64,
+    /// Most changes of the mesh; bounds the memory, about 150 bytes each. Default 20 million.
+    pub max_changes: u64,
+    /// The mesh may come to have at most this many times the vertices, edges and faces that it has, together, default 16,
+    pub max_growth: u64,
+    /// and this many more. Default 1 million.
+    pub max_extra_elements: u64,
+    /// Most seconds, at least 0, infinite for no bound. Default 60.
+    pub max_seconds: f64,
 }
 
-// SAFETY: `repr(C)`, five integers of four bytes.
+// SAFETY: `repr(C)`, 6 * 4 + 5 * 8 + 8 bytes without padding, of integers and a double.
 unsafe impl Options for WeltFeatureOptions {
     fn first_size() -> usize {
         20
     }
 
     fn defaults(struct_size: u32) -> Self {
-        Self { struct_size, fit: WELT_FIT_SOLVE, deviation: 0, parity: WELT_PARITY_AUTO, strict: 0 }
+        let Limits { applications, steps, edits, depth, growth, extra, time } = Limits::default();
+        Self {
+            struct_size,
+            fit: WELT_FIT_SOLVE,
+            deviation: 0,
+            parity: WELT_PARITY_AUTO,
+            strict: 0,
+            max_script_depth: u32::try_from(depth).unwrap_or(u32::MAX),
+            max_applications: applications,
+            max_steps: steps,
+            max_changes: edits,
+            max_growth: growth,
+            max_extra_elements: extra,
+            max_seconds: time.map_or(f64::INFINITY, |time| time.as_secs_f64()),
+        }
+    }
+}
+
+impl WeltFeatureOptions {
+    fn limits(&self) -> Result<Limits, Failure> {
+        let seconds = self.max_seconds;
+        if seconds.is_nan() || seconds < 0.0 {
+            return Err(Failure::argument(format!("max_seconds is {seconds}; it is 0 or more")));
+        }
+        Ok(Limits {
+            applications: self.max_applications,
+            steps: self.max_steps,
+            edits: self.max_changes,
+            depth: self.max_script_depth as usize,
+            growth: self.max_growth,
+            extra: self.max_extra_elements,
+            // More than a duration can hold is no bound.
+            time: Duration::try_from_secs_f64(seconds).ok(),
+        })
     }
 }
 
@@ -144,6 +194,7 @@ unsafe fn apply(
         method: method(options.fit)?,
         parity: parity_mode(options.parity)?,
         strict: options.strict != 0,
+        limits: options.limits()?,
         samples: if options.deviation != 0 { SAMPLES } else { 0 },
         ..feature::Options::default()
     };
@@ -178,7 +229,8 @@ unsafe fn apply(
 /// warnings. Free it with welt_report_free.
 ///
 /// Fails with WELT_ERROR_ARGUMENT (an unknown feature or setting, a selection of another mesh, a width that an edge cannot
-/// take: the place is the edge), WELT_ERROR_FILE, WELT_ERROR_RULE (also, when strict, for marks that no rule handles),
+/// take: the place is the edge), WELT_ERROR_FILE, WELT_ERROR_RULE (also for rules that go beyond a limit of the options and, when
+/// strict, for marks that no rule handles),
 /// WELT_ERROR_CANCELLED; the mesh is as it was before then. Since: 0.1.
 #[unsafe(no_mangle)]
 #[allow(clippy::too_many_arguments)]
@@ -275,6 +327,9 @@ pub unsafe extern "C" fn welt_mesh_displace(
             }
             if !height.is_finite() {
                 return Err(Failure::argument(format!("the height of vertex {v} is not a finite number")));
+            }
+            if height.abs() > MOST_COORDINATE {
+                return Err(Failure::argument(format!("the height of vertex {v} is beyond 1e50")));
             }
         }
         let heights: Vec<(VertexId, f64)> =

@@ -7,7 +7,8 @@ use super::failure::{Failure, Place};
 use super::status::WELT_ERROR_MESH;
 use crate::fault;
 use crate::io::Limits;
-use crate::mesh::{Mesh, Polygons, VertexId};
+use crate::memory;
+use crate::mesh::{Mesh, Polygons, VertexId, is_place};
 use glam::DVec3;
 
 /// A control mesh. Its vertices, edges and faces are numbered from 0 without gaps.
@@ -70,7 +71,7 @@ pub(super) unsafe fn mesh_of<'a>(mesh: *const WeltMesh) -> Result<&'a Mesh, Fail
 ///
 /// The arrays are copied. Fails with WELT_ERROR_MESH where the polygons are no surface (an edge with three faces, fans of
 /// faces that meet in a vertex only, neighbours that are inside out to each other, ...): each place of the error is one
-/// defect; with WELT_ERROR_TOO_LARGE beyond the default limits of welt_import_options. Since: 0.1.
+/// defect; with WELT_ERROR_TOO_LARGE beyond the default limits of welt_import_options; with WELT_ERROR_MEMORY. Since: 0.1.
 #[unsafe(no_mangle)]
 #[allow(clippy::too_many_arguments)]
 pub unsafe extern "C" fn welt_mesh_create(
@@ -97,8 +98,8 @@ pub unsafe extern "C" fn welt_mesh_create(
         };
         let polygons = Polygons {
             positions,
-            face_sizes: sizes.to_vec(),
-            face_vertices: vertices.to_vec(),
+            face_sizes: memory::copied(sizes)?,
+            face_vertices: memory::copied(vertices)?,
             ..Polygons::default()
         };
         Limits::default().check(&polygons)?;
@@ -233,7 +234,7 @@ pub unsafe extern "C" fn welt_mesh_set_positions(
                 "vertex_count is {vertex_count}; the mesh has {expected} vertices"
             )));
         }
-        check_finite(&positions)?;
+        check_places(&positions)?;
         mesh.change(|mesh| {
             for (id, &position) in positions.iter().enumerate() {
                 mesh.set_position(VertexId(id as u32), position);
@@ -246,18 +247,19 @@ pub unsafe extern "C" fn welt_mesh_set_positions(
     unsafe { boundary(error, body) }
 }
 
-fn check_finite(positions: &[DVec3]) -> Result<(), Failure> {
-    const MESSAGE: &str = "a coordinate is not a finite number";
+fn check_places(positions: &[DVec3]) -> Result<(), Failure> {
+    const MESSAGE: &str = "a coordinate is not a number from -1e50 to 1e50";
     let places: Vec<Place> = positions
         .iter()
         .enumerate()
-        .filter(|(_, position)| !position.is_finite())
+        .filter(|(_, position)| !is_place(**position))
         .map(|(id, _)| Place::vertex(id as u32, MESSAGE))
         .collect();
     if places.is_empty() {
         return Ok(());
     }
-    let message = format!("{} vertices have a coordinate that is not a finite number", places.len());
+    let message =
+        format!("{} vertices have a coordinate that is not a number from -1e50 to 1e50", places.len());
     Err(Failure { code: WELT_ERROR_MESH, message, places })
 }
 

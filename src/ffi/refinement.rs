@@ -7,6 +7,7 @@ use super::failure::Failure;
 use super::job::WeltJob;
 use super::mesh::{WeltMesh, mesh_of};
 use crate::job::Job;
+use crate::memory;
 use crate::mesh::Mesh;
 use crate::subdivision::{Level, Refinement, VertexParent};
 use glam::DVec3;
@@ -36,7 +37,7 @@ impl WeltRefinement {
         for level in 0..refinement.depth() {
             job.step("refine", (level + 1) as f64 / (refinement.depth() + 1) as f64)?;
             let mut next = Vec::new();
-            refinement.refine_positions(level, &positions[level], &mut next);
+            refinement.refine_positions(level, &positions[level], &mut next)?;
             positions.push(next);
         }
         job.step("refine", 1.0)?;
@@ -61,7 +62,8 @@ impl WeltRefinement {
 /// refinement: receives the handle; free it with welt_refinement_free.
 ///
 /// Fails with WELT_ERROR_TOO_LARGE before anything is computed where a level would have more elements than 31 bits can
-/// number, and with WELT_ERROR_CANCELLED. Since: 0.1.
+/// number, with WELT_ERROR_MEMORY, and with WELT_ERROR_CANCELLED. Memory: about 100 bytes for each face of the last level.
+/// Since: 0.1.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn welt_refinement_create(
     mesh: *const WeltMesh,
@@ -212,7 +214,7 @@ pub unsafe extern "C" fn welt_refinement_mesh(
         let (refinement, output) =
             unsafe { (arguments::handle(refinement, "refinement")?, Output::new(mesh, "mesh")?) };
         let (_, positions) = refinement.level(level)?;
-        let polygons = refinement.refinement.polygons(level as usize, positions.to_vec());
+        let polygons = refinement.refinement.polygons(level as usize, memory::copied(positions)?)?;
         output.handle(WeltMesh::new(Mesh::from_polygons(&polygons)?));
         Ok(())
     };

@@ -23,3 +23,5 @@ pub const WELT_ERROR_SYNTAX: i32 = -9;
 /// A rule failed, or the rules do not come to an end, or, where that is asked for, a mark is left that no rule handles; the
 /// message names rule and place. The mesh is as it was before.
 pub const WELT_ERROR_RULE: i32 = -10;
+/// There is no memory for a large list; the message says how much was asked for. Nothing was changed.
+pub const WELT_ERROR_MEMORY: i32 = -11;

@@ -13,10 +13,25 @@ pub enum Stop {
     Steps,
     /// All changes of the mesh were used.
     Edits,
+    /// The mesh has as many elements as it may have.
+    Elements,
     /// The time was used.
     Time,
     /// The caller cancelled.
     Cancelled,
+}
+
+/// What scripts may do.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub struct Allowance {
+    /// Steps, see [`Budget`].
+    pub steps: u64,
+    /// Changes of the mesh.
+    pub edits: u64,
+    /// Vertices, edges and faces that the mesh may have, together.
+    pub elements: u64,
+    /// Procedures and loops that may be open inside one another.
+    pub depth: usize,
 }
 
 /// What scripts and searches may still do. One step is one operation of a script, one element copied by it,
@@ -27,14 +42,22 @@ pub struct Budget<'a> {
     slice: u64,
     left: u64,
     edits: u64,
+    elements: u64,
+    depth: usize,
     deadline: Option<Instant>,
     job: Option<&'a Job>,
 }
 
 impl<'a> Budget<'a> {
-    /// `steps` steps and `edits` changes of the mesh, until `deadline`, as long as `job` is not cancelled.
-    pub fn new(steps: u64, edits: u64, deadline: Option<Instant>, job: Option<&'a Job>) -> Self {
-        Self { slice: 0, left: steps, edits, deadline, job }
+    /// What `allowance` says, until `deadline`, as long as `job` is not cancelled.
+    pub fn new(allowance: Allowance, deadline: Option<Instant>, job: Option<&'a Job>) -> Self {
+        let Allowance { steps, edits, elements, depth } = allowance;
+        Self { slice: 0, left: steps, edits, elements, depth, deadline, job }
+    }
+
+    /// Procedures and loops that may be open inside one another.
+    pub(crate) fn depth(&self) -> usize {
+        self.depth
     }
 
     /// Takes one step.
@@ -66,6 +89,17 @@ impl<'a> Budget<'a> {
     pub(crate) fn edit(&mut self, count: u64) -> Result<(), Stop> {
         self.edits = self.edits.checked_sub(count).ok_or(Stop::Edits)?;
         Ok(())
+    }
+
+    /// Takes as many changes as `more` elements of a mesh that has `elements`.
+    ///
+    /// # Errors
+    /// They are used up, or the mesh has no room for them.
+    pub(crate) fn grow(&mut self, elements: usize, more: u64) -> Result<(), Stop> {
+        if (elements as u64).saturating_add(more) > self.elements {
+            return Err(Stop::Elements);
+        }
+        self.edit(more)
     }
 
     #[cold]

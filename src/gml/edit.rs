@@ -3,17 +3,22 @@
 use super::kind::Kinds;
 use super::machine::{Execution, Fault, error};
 use super::value::Value;
-use crate::mesh::{Corner, EulerError, HalfEdgeId, Mesh, Node, VertexId};
+use crate::mesh::{Corner, EulerError, HalfEdgeId, Mesh, Node, VertexId, is_place};
 use glam::DVec3;
 
 /// Sharpness from which on an edge or a vertex is infinitely sharp (OpenSubdiv's scale).
 const INFINITE: f32 = 10.0;
 
 impl Execution<'_, '_, '_> {
+    /// Asks for room for `more` vertices, edges and faces.
+    fn grow(&mut self, more: u64) -> Result<(), Fault> {
+        Ok(self.environment.budget.grow(self.environment.mesh.element_count(), more)?)
+    }
+
     pub(super) fn make_vefs(&mut self) -> Result<(), Fault> {
         let p1 = self.pop_vec3()?;
         let p0 = self.pop_vec3()?;
-        self.environment.budget.edit(4)?;
+        self.grow(4)?;
         let made = self.environment.mesh.make_vefs(p0, p1);
         let e = self.euler(made)?;
         self.push_half_edge(e)
@@ -23,7 +28,7 @@ impl Execution<'_, '_, '_> {
         let p = self.pop_vec3()?;
         let e1 = self.pop_half_edge()?;
         let e0 = self.pop_half_edge()?;
-        self.environment.budget.edit(2)?;
+        self.grow(2)?;
         let made = self.environment.mesh.make_ev(e0, e1, p);
         let n = self.euler(made)?;
         self.push_half_edge(n)
@@ -32,7 +37,7 @@ impl Execution<'_, '_, '_> {
     pub(super) fn make_ev_one(&mut self) -> Result<(), Fault> {
         let p = self.pop_vec3()?;
         let e = self.pop_half_edge()?;
-        self.environment.budget.edit(2)?;
+        self.grow(2)?;
         let made = self.environment.mesh.make_ev_one(e, p);
         let n = self.euler(made)?;
         self.push_half_edge(n)
@@ -41,7 +46,7 @@ impl Execution<'_, '_, '_> {
     pub(super) fn make_ef(&mut self) -> Result<(), Fault> {
         let e1 = self.pop_half_edge()?;
         let e0 = self.pop_half_edge()?;
-        self.environment.budget.edit(2)?;
+        self.grow(2)?;
         let made = self.environment.mesh.make_ef(e0, e1);
         let n = self.euler(made)?;
         self.push_half_edge(n)
@@ -74,6 +79,7 @@ impl Execution<'_, '_, '_> {
         let corners: usize = faces.iter().map(Vec::len).sum();
         // Each round of the tiling looks at all faces that are left.
         self.environment.budget.spend_many((corners * faces.len().max(1)) as u64)?;
+        self.grow(2 * (positions.len() + faces.len()) as u64)?;
         self.environment.budget.edit(2 * corners as u64)?;
         let tiled = self.environment.mesh.tile_face(e, &positions, &faces);
         let inner = tiled.map_err(|problem| error(format!("makeFaces: {problem}")))?;
@@ -91,7 +97,7 @@ impl Execution<'_, '_, '_> {
     }
 
     fn place_vertex(&mut self, v: VertexId, p: DVec3) -> Result<(), Fault> {
-        if !p.is_finite() {
+        if !is_place(p) {
             return self.euler(Err(EulerError::NotFinite));
         }
         self.environment.budget.edit(1)?;

@@ -8,8 +8,6 @@ use super::value::{Heap, HeapFull, Value};
 use crate::mesh::{Checkpoint, EulerError, Mesh, Node, Symbol};
 use std::collections::BTreeMap;
 
-/// Procedures and loops that may be open at once.
-const DEEPEST: usize = 1000;
 /// Values that may be on the stack.
 const TALLEST: usize = 1 << 20;
 
@@ -278,8 +276,11 @@ impl Execution<'_, '_, '_> {
     }
 
     pub(super) fn push_frame(&mut self, frame: Frame) -> Result<(), Fault> {
-        if self.machine.frames.len() >= DEEPEST {
-            return Err(error(format!("more than {DEEPEST} procedures and loops inside one another")));
+        let depth = self.environment.budget.depth();
+        if self.machine.frames.len() >= depth {
+            return Err(error(format!(
+                "more than {depth} procedures and loops inside one another; end the recursion, or raise the limit"
+            )));
         }
         self.machine.frames.push(frame);
         Ok(())

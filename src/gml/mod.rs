@@ -23,7 +23,7 @@ mod value;
 mod vector;
 mod word;
 
-pub use budget::{Budget, Stop};
+pub use budget::{Allowance, Budget, Stop};
 pub use compile::{Scope, compile};
 pub use machine::{Environment, Failure, Fault, Machine};
 pub use program::{Program, StringId, Strings};

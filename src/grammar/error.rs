@@ -94,7 +94,9 @@ pub enum RunError {
         diagnostic: Box<Diagnostic>,
     },
     /// The run took more steps than allowed.
-    #[error("the rules do not come to an end: {limit}. The last rule was {rule} at {place}\n{diagnostic}")]
+    #[error(
+        "the rules do not come to an end: {limit}. The last rule was {rule} at {place}; end the rules, or raise the limit\n{diagnostic}"
+    )]
     Runaway {
         /// The limit that was reached, in words.
         limit: String,

@@ -1,6 +1,7 @@
 //! What can go wrong while a file is read or written.
 
 use super::Excess;
+use crate::memory::OutOfMemory;
 use crate::mesh::Defect;
 use serde::Serialize;
 use std::io;
@@ -47,6 +48,14 @@ pub enum ImportError {
         message: String,
         /// What to do.
         remedy: &'static str,
+    },
+    /// There is no memory for what the file holds.
+    #[error("{file}: {source}")]
+    Memory {
+        /// The file.
+        file: String,
+        /// How much was asked for.
+        source: OutOfMemory,
     },
     /// The distance for welding is not a number that can be used.
     #[error("the welding distance {distance} is not usable; give a finite number that is 0 or larger")]

@@ -23,6 +23,7 @@ pub use save::save;
 pub use source::Source;
 
 use crate::fault;
+use crate::memory::{self, OutOfMemory};
 use crate::mesh::{Mesh, Polygons};
 use std::path::Path;
 
@@ -89,7 +90,7 @@ impl Limits {
                 return Err(Excess::Arity { face, count, limit: self.max_arity });
             }
         }
-        let mut valences = vec![0u32; polygons.positions.len()];
+        let mut valences = memory::filled(polygons.positions.len(), 0u32)?;
         for &vertex in &polygons.face_vertices {
             if let Some(valence) = valences.get_mut(vertex as usize) {
                 *valence += 1;
@@ -129,6 +130,9 @@ pub enum Excess {
         /// How many it may have.
         limit: u64,
     },
+    /// There is no memory to count the faces at the vertices.
+    #[error(transparent)]
+    Memory(#[from] OutOfMemory),
     /// A vertex with too many faces.
     #[error(
         "{count} faces meet at vertex {vertex}, more than the limit of {limit}; use fewer, or raise the limit"
@@ -215,6 +219,7 @@ pub fn read_bytes(
     source.mend(options)?;
     match options.limits.check(&source.polygons) {
         Ok(()) => Ok(source),
+        Err(Excess::Memory(source)) => Err(ImportError::Memory { file: name.to_owned(), source }),
         Err(excess) => Err(ImportError::Excess { file: name.to_owned(), excess }),
     }
 }

@@ -3,6 +3,7 @@
 use super::error::{ImportError, LocatedDefect};
 use super::report::{IgnoredKind, ImportReport};
 use super::{Import, ImportOptions, repair};
+use crate::memory::OutOfMemory;
 use crate::mesh::{Defect, Defects, Mesh, Polygons};
 
 /// The polygons of a file with what is needed to speak about them: name, lines, report.
@@ -72,7 +73,12 @@ impl Source {
                 self.report_lost_creases(&mesh);
                 Ok(Import { mesh, report: self.report })
             }
-            Err(defects) => Err(ImportError::Defects { defects: self.locate(defects), file: self.name }),
+            Err(defects) => Err(match defects.0[..] {
+                [Defect::NoMemory { bytes }] => {
+                    ImportError::Memory { source: OutOfMemory { bytes }, file: self.name }
+                }
+                _ => ImportError::Defects { defects: self.locate(defects), file: self.name },
+            }),
         }
     }
 

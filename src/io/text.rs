@@ -1,6 +1,7 @@
 //! Text files as bytes: lines, tokens and numbers, with the place of each.
 
 use super::error::ImportError;
+use crate::memory::OutOfMemory;
 
 /// Reads tokens from a text file held in memory. Lines end with LF, CRLF or CR; a backslash before the end of a line
 /// joins the next one to it; `#` at the start of a token begins a comment.
@@ -24,11 +25,23 @@ pub(super) struct Fault {
     pub(super) place: Place,
     pub(super) message: String,
     pub(super) remedy: &'static str,
+    /// Nothing is wrong but this.
+    pub(super) memory: Option<OutOfMemory>,
+}
+
+impl From<OutOfMemory> for Box<Fault> {
+    fn from(error: OutOfMemory) -> Self {
+        let place = Place { line: 0, column: 0 };
+        Self::new(Fault { place, message: String::new(), remedy: "", memory: Some(error) })
+    }
 }
 
 impl Fault {
     /// The error of the file called `file`.
     pub(super) fn into_error(self, file: &str) -> ImportError {
+        if let Some(source) = self.memory {
+            return ImportError::Memory { file: file.into(), source };
+        }
         let Place { line, column } = self.place;
         ImportError::Text { file: file.into(), line, column, message: self.message, remedy: self.remedy }
     }

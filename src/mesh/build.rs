@@ -9,6 +9,7 @@ use super::ids::{FaceId, NONE};
 use super::polygons::Polygons;
 use super::{HalfEdge, Mesh};
 use crate::fault;
+use crate::memory::{self, OutOfMemory};
 use rustc_hash::FxHashMap;
 
 /// Edges per vertex that are kept in a list: a pole of a million triangles must not cost its square.
@@ -16,11 +17,14 @@ const LONGEST_LIST: u32 = 16;
 
 impl Mesh {
     /// Room for a feature beside what was read, so that the first change does not move tables of the mesh's size.
-    fn reserve_room(&mut self) {
-        self.half_edges.reserve(self.half_edges.len() / 8);
-        self.vertices.reserve(self.vertices.len() / 8);
-        self.positions.reserve(self.positions.len() / 8);
-        self.faces.reserve(self.faces.len() / 8);
+    fn reserve_room(&mut self) -> Result<(), OutOfMemory> {
+        let more = self.half_edges.len() / 8;
+        memory::reserve(&mut self.half_edges, more)?;
+        let more = self.vertices.len() / 8;
+        memory::reserve(&mut self.vertices, more)?;
+        memory::reserve(&mut self.positions, more)?;
+        let more = self.faces.len() / 8;
+        memory::reserve(&mut self.faces, more)
     }
 
     /// Builds the mesh. Vertex and face numbers are those of `polygons`; vertices without a face are kept.
@@ -29,15 +33,16 @@ impl Mesh {
     /// Every [`Defect`] found, each with the numbers of the elements it concerns. Fans that meet in a vertex are looked
     /// for only when edges are in order, and these only when the faces are.
     pub fn from_polygons(polygons: &Polygons) -> Result<Self, Defects> {
-        let defects = check_arrays(polygons);
+        let defects = check_arrays(polygons)?;
         if !defects.is_empty() {
             return Err(Defects(defects));
         }
         fault::point("build");
-        let mut edges = EdgeTable::new(polygons);
-        let mut vertices = vec![NONE; polygons.positions.len()];
-        let mut faces = Vec::with_capacity(polygons.face_sizes.len());
+        let mut edges = EdgeTable::new(polygons)?;
+        let mut vertices = memory::filled(polygons.positions.len(), NONE)?;
+        let mut faces = memory::room(polygons.face_sizes.len())?;
         for (face, face_vertices) in polygons.faces().enumerate() {
+            edges.reserve(face_vertices.len())?;
             let mut first = NONE;
             let mut prev = NONE;
             for (i, &vertex) in face_vertices.iter().enumerate() {
@@ -63,20 +68,20 @@ impl Mesh {
 
         let mut mesh = Self {
             half_edges: edges.half_edges,
-            positions: polygons.positions.clone(),
+            positions: memory::copied(&polygons.positions)?,
             first_new_vertex: vertices.len() as u32,
             first_new_face: faces.len() as u32,
             vertices,
             faces,
             ..Self::default()
         };
-        mesh.reserve_room();
+        mesh.reserve_room()?;
         mesh.close_boundaries();
         let fans = mesh.separate_fans();
         if !fans.is_empty() {
             return Err(Defects(fans));
         }
-        mesh.carry_data(polygons);
+        mesh.carry_data(polygons)?;
         Ok(mesh)
     }
 
@@ -142,10 +147,10 @@ impl Mesh {
     }
 
     /// Takes over what travels with the faces and corners.
-    fn carry_data(&mut self, polygons: &Polygons) {
+    fn carry_data(&mut self, polygons: &Polygons) -> Result<(), OutOfMemory> {
         if polygons.face_texcoords.len() == polygons.face_vertices.len() && !polygons.texcoords.is_empty() {
-            self.texcoords = polygons.texcoords.clone();
-            let mut corner_texcoords = vec![NONE; self.half_edges.len()];
+            self.texcoords = memory::copied(&polygons.texcoords)?;
+            let mut corner_texcoords = memory::filled(self.half_edges.len(), NONE)?;
             let corners = self.faces().flat_map(|f| self.face_half_edges(f));
             for (h, &texcoord) in corners.zip(&polygons.face_texcoords) {
                 corner_texcoords[h.index()] = texcoord;
@@ -154,7 +159,7 @@ impl Mesh {
         }
         if polygons.face_sets.len() == self.faces.len() {
             self.sets = polygons.sets.clone();
-            self.face_sets = polygons.face_sets.clone();
+            self.face_sets = memory::copied(&polygons.face_sets)?;
         }
         self.material_libraries = polygons.material_libraries.clone();
         let ends: Vec<(u32, u32)> = polygons.creases.iter().map(|&(a, b, _)| (a, b)).collect();
@@ -174,30 +179,31 @@ impl Mesh {
                 self.write_hole(face, true);
             }
         }
+        Ok(())
     }
 }
 
 /// Everything that can be wrong before two faces are compared.
-fn check_arrays(polygons: &Polygons) -> Vec<Defect> {
+fn check_arrays(polygons: &Polygons) -> Result<Vec<Defect>, OutOfMemory> {
     let found = polygons.face_vertices.len() as u64;
     let promised: u64 = polygons.face_sizes.iter().map(|&size| u64::from(size)).sum();
     if promised != found {
-        return vec![Defect::SizeMismatch { promised, found }];
+        return Ok(vec![Defect::SizeMismatch { promised, found }]);
     }
     // Ids have 31 bits (half-edges come in pairs, faces carry a boundary bit).
     let count = (polygons.positions.len() as u64).max(2 * found);
     if count > (1 << 31) - 2 {
-        return vec![Defect::TooLarge { count }];
+        return Ok(vec![Defect::TooLarge { count }]);
     }
     let mut defects = Vec::new();
     for (vertex, position) in polygons.positions.iter().enumerate() {
-        if !position.is_finite() {
+        if !super::is_place(*position) {
             defects.push(Defect::NotFinite { vertex: vertex as u32 });
         }
     }
     let vertex_count = polygons.positions.len();
     // The last face that named each vertex: finds repetitions in linear time.
-    let mut last_face = vec![NONE; vertex_count];
+    let mut last_face = memory::filled(vertex_count, NONE)?;
     for (face, vertices) in polygons.faces().enumerate() {
         let face = face as u32;
         if vertices.len() < 3 {
@@ -213,7 +219,7 @@ fn check_arrays(polygons: &Polygons) -> Vec<Defect> {
             }
         }
     }
-    defects
+    Ok(defects)
 }
 
 /// The half-edges that the faces so far have made, and how to find them by their ends.
@@ -231,17 +237,23 @@ struct EdgeTable {
 }
 
 impl EdgeTable {
-    fn new(polygons: &Polygons) -> Self {
+    fn new(polygons: &Polygons) -> Result<Self, OutOfMemory> {
         let corner_count = polygons.face_vertices.len();
         // Enough for a mesh with few boundaries.
         let half_edge_count = corner_count + corner_count / 16;
-        Self {
-            half_edges: Vec::with_capacity(half_edge_count),
-            last_edge: vec![NONE; polygons.positions.len()],
-            edge_before: Vec::with_capacity(half_edge_count / 2),
+        Ok(Self {
+            half_edges: memory::room(half_edge_count)?,
+            last_edge: memory::filled(polygons.positions.len(), NONE)?,
+            edge_before: memory::room(half_edge_count / 2)?,
             crowded: FxHashMap::default(),
             conflicts: Vec::new(),
-        }
+        })
+    }
+
+    /// Makes room for the edges of a face with `arity` sides.
+    fn reserve(&mut self, arity: usize) -> Result<(), OutOfMemory> {
+        memory::reserve(&mut self.half_edges, 2 * arity)?;
+        memory::reserve(&mut self.edge_before, arity)
     }
 
     /// The half-edge from `a` to `b` with `face` on its left.

@@ -1,5 +1,6 @@
 //! What is wrong with a mesh, element by element.
 
+use crate::memory::OutOfMemory;
 use serde::Serialize;
 use std::fmt;
 
@@ -18,6 +19,11 @@ pub enum Defect {
     TooLarge {
         /// How many.
         count: u64,
+    },
+    /// There is no memory for a list of the mesh.
+    NoMemory {
+        /// Size of the list.
+        bytes: u64,
     },
     /// A face with fewer than three vertices.
     TooFewVertices {
@@ -40,7 +46,7 @@ pub enum Defect {
         /// The vertex.
         vertex: u32,
     },
-    /// A vertex with a coordinate that is not a finite number.
+    /// A vertex with a coordinate that is not finite or beyond [`MOST_COORDINATE`](super::MOST_COORDINATE).
     NotFinite {
         /// The vertex.
         vertex: u32,
@@ -73,7 +79,7 @@ impl Defect {
     pub fn renumbered(self, vertex: impl Fn(u32) -> u32, mut face: impl FnMut(u32) -> u32) -> Self {
         let ends = |edge: (u32, u32)| (vertex(edge.0), vertex(edge.1));
         match self {
-            Self::SizeMismatch { .. } | Self::TooLarge { .. } => self,
+            Self::SizeMismatch { .. } | Self::TooLarge { .. } | Self::NoMemory { .. } => self,
             Self::TooFewVertices { face: f, size } => Self::TooFewVertices { face: face(f), size },
             Self::VertexOutOfRange { face: f, vertex: v } => {
                 Self::VertexOutOfRange { face: face(f), vertex: vertex(v) }
@@ -108,6 +114,7 @@ impl fmt::Display for Defect {
             Self::TooLarge { count } => {
                 write!(f, "{count} elements are more than a mesh can number (2^31 - 2)")
             }
+            &Self::NoMemory { bytes } => OutOfMemory { bytes }.fmt(f),
             Self::TooFewVertices { face, size } => {
                 write!(f, "face {face} has {size} vertices; a face needs at least 3")
             }
@@ -118,7 +125,7 @@ impl fmt::Display for Defect {
                 write!(f, "face {face} names vertex {vertex} twice")
             }
             Self::NotFinite { vertex } => {
-                write!(f, "vertex {vertex} has a coordinate that is not a finite number")
+                write!(f, "vertex {vertex} has a coordinate that is not a number from -1e50 to 1e50")
             }
             Self::EdgeWithManyFaces { edge, faces } => write!(
                 f,
@@ -146,6 +153,12 @@ impl fmt::Display for Defect {
 #[derive(Clone, PartialEq, Debug, thiserror::Error)]
 #[error("{}", summary(.0))]
 pub struct Defects(pub Vec<Defect>);
+
+impl From<OutOfMemory> for Defects {
+    fn from(error: OutOfMemory) -> Self {
+        Self(vec![Defect::NoMemory { bytes: error.bytes }])
+    }
+}
 
 /// The first few defects in one line; the whole list stays available to the caller.
 fn summary(defects: &[Defect]) -> String {

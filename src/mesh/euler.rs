@@ -7,7 +7,7 @@
 
 use super::ids::{DEAD, FaceId, HalfEdgeId, NONE, Node, VertexId};
 use super::log::Change;
-use super::{HalfEdge, Mesh};
+use super::{HalfEdge, Mesh, is_place};
 use glam::DVec3;
 use std::fmt;
 
@@ -87,7 +87,7 @@ impl EulerError {
             Self::NotSingleEdge(h) => {
                 format!("killVEFS needs a shell of a single edge; {} has neighbours", edge(h))
             }
-            Self::NotFinite => "a vertex needs finite coordinates".to_owned(),
+            Self::NotFinite => "a vertex needs coordinates from -1e50 to 1e50".to_owned(),
             Self::Full => "the mesh has no ids left for new elements".to_owned(),
         }
     }
@@ -117,7 +117,7 @@ impl Mesh {
     /// [`EulerError::NotFinite`], [`EulerError::Full`].
     pub fn make_vefs(&mut self, p0: DVec3, p1: DVec3) -> Result<HalfEdgeId, EulerError> {
         self.check_room()?;
-        if !p0.is_finite() || !p1.is_finite() {
+        if !is_place(p0) || !is_place(p1) {
             return Err(EulerError::NotFinite);
         }
         let (v0, v1) = (self.add_vertex(p0), self.add_vertex(p1));
@@ -182,7 +182,7 @@ impl Mesh {
         if a != self.source(e1) {
             return Err(EulerError::DifferentVertices(e0, a, e1, self.source(e1)));
         }
-        if !position.is_finite() {
+        if !is_place(position) {
             return Err(EulerError::NotFinite);
         }
         if self.face(e0).is_boundary() && self.face(e1).is_boundary() {

@@ -90,6 +90,14 @@ pub struct Mesh {
     log: Log,
 }
 
+/// Vertices lie between minus this number and this number in every coordinate, so that products of lengths do not overflow.
+pub const MOST_COORDINATE: f64 = 1e50;
+
+/// True for a place where a vertex may lie.
+pub fn is_place(place: DVec3) -> bool {
+    place.to_array().iter().all(|x| x.abs() <= MOST_COORDINATE)
+}
+
 impl Mesh {
     /// Number of vertex ids in use, removed ones included: ids are below it.
     pub fn vertex_bound(&self) -> usize {
@@ -104,6 +112,11 @@ impl Mesh {
     /// Number of face ids in use, removed ones included, boundary loops not.
     pub fn face_bound(&self) -> usize {
         self.faces.len()
+    }
+
+    /// Number of vertices, edges, faces and boundary loops that exist, together.
+    pub fn element_count(&self) -> usize {
+        self.vertices.len() + self.half_edges.len() / 2 + self.faces.len() + self.loops.len() - self.holes
     }
 
     /// Number of boundary loop ids in use, removed ones included.

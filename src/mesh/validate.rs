@@ -111,7 +111,7 @@ impl Mesh {
     fn validate_rings(&self) -> Result<(), Violation> {
         let mut on_ring = 0;
         for v in self.vertices() {
-            require!(self.position(v).is_finite(), "vertex {} is not at a finite place", v.0);
+            require!(super::is_place(self.position(v)), "vertex {} is not at a finite place", v.0);
             let stored = self.vertices[v.index()];
             if stored == NONE {
                 continue;

@@ -22,7 +22,7 @@ pub(crate) use linear::{LeastSquares, Row};
 
 use crate::job::{Cancelled, Job};
 use crate::mesh::{FaceId, Mesh, VertexId};
-use crate::surface::LimitSurface;
+use crate::surface::{FreezeError, LimitSurface};
 use curves::is_on_curve;
 use freedom::freedom;
 use rim::fit_rim;
@@ -149,8 +149,8 @@ impl Target {
     /// Freezes the limit surface of `faces`.
     ///
     /// # Errors
-    /// [`Cancelled`].
-    pub fn freeze(mesh: &Mesh, faces: &[FaceId], job: &Job) -> Result<Self, Cancelled> {
+    /// [`FreezeError`].
+    pub fn freeze(mesh: &Mesh, faces: &[FaceId], job: &Job) -> Result<Self, FreezeError> {
         let (mut sum, mut count) = (0.0, 0u32);
         for h in faces.iter().flat_map(|&f| mesh.face_half_edges(f)) {
             sum += mesh.edge_length(h);

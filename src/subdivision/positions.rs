@@ -6,14 +6,23 @@
 use super::refinement::Refinement;
 use super::topology::Level;
 use crate::fault;
+use crate::memory::{self, OutOfMemory};
 use glam::DVec3;
 
 impl Refinement {
     /// Writes the positions of level `level + 1` to `next`, whose memory is reused.
     ///
+    /// # Errors
+    /// [`OutOfMemory`].
+    ///
     /// # Panics
     /// When `level` is the last one, or `positions` has not one entry per vertex of `level`.
-    pub fn refine_positions(&self, level: usize, positions: &[DVec3], next: &mut Vec<DVec3>) {
+    pub fn refine_positions(
+        &self,
+        level: usize,
+        positions: &[DVec3],
+        next: &mut Vec<DVec3>,
+    ) -> Result<(), OutOfMemory> {
         assert!(level < self.depth(), "level {level} is the last one");
         fault::point("refine");
         let exceptions = self.exceptions(level);
@@ -23,7 +32,7 @@ impl Refinement {
         next.clear();
         if next.capacity() < vertex_count as usize {
             // Growing would copy what is to be overwritten.
-            *next = Vec::new();
+            *next = memory::room(vertex_count as usize)?;
         }
         next.resize(vertex_count as usize, DVec3::ZERO);
         let (vertex_points, rest) = next.split_at_mut(level.vertex_count());
@@ -49,34 +58,46 @@ impl Refinement {
             vertex_points[edge.source as usize] = a * 0.75 + (before + b) * 0.125;
         }
         exceptions.apply(positions, vertex_points, edge_points);
+        Ok(())
     }
 
     /// The positions of level `level`, refined from those of the control mesh.
     ///
+    /// # Errors
+    /// [`OutOfMemory`].
+    ///
     /// # Panics
     /// When there is no such level, or `control` has not one entry per vertex of level 0.
-    pub fn positions(&self, level: usize, control: &[DVec3]) -> Vec<DVec3> {
-        let mut current = control.to_vec();
+    pub fn positions(&self, level: usize, control: &[DVec3]) -> Result<Vec<DVec3>, OutOfMemory> {
+        let mut current = memory::copied(control)?;
         let mut next = Vec::new();
         for level in 0..level {
-            self.refine_positions(level, &current, &mut next);
+            self.refine_positions(level, &current, &mut next)?;
             std::mem::swap(&mut current, &mut next);
         }
-        current
+        Ok(current)
     }
 
     /// The points of the limit surface at the vertices of `level`, which must have quads only (every level but 0 has).
     /// Isolated vertices stay where they are. `None` where level 0 has other faces: refine once, and take the first
     /// points of level 1.
     ///
+    /// # Errors
+    /// [`OutOfMemory`].
+    ///
     /// # Panics
     /// When there is no such level, or `positions` has not one entry per vertex of `level`.
-    pub fn limit_positions(&self, level: usize, positions: &[DVec3]) -> Option<Vec<DVec3>> {
+    pub fn limit_positions(
+        &self,
+        level: usize,
+        positions: &[DVec3],
+    ) -> Result<Option<Vec<DVec3>>, OutOfMemory> {
         let sharpness = self.sharpness(level);
         let level = self.level(level);
         assert_eq!(positions.len(), level.vertex_count(), "one position per vertex");
-        let mut limit = vec![DVec3::ZERO; positions.len()];
-        for quad in level.quads()? {
+        let Some(quads) = level.quads() else { return Ok(None) };
+        let mut limit = memory::filled(positions.len(), DVec3::ZERO)?;
+        for quad in quads {
             let corner = quad.map(|v| positions[v as usize]);
             for i in 0..4 {
                 limit[quad[i] as usize] += 4.0 * corner[(i + 1) % 4] + corner[(i + 2) % 4];
@@ -94,7 +115,7 @@ impl Refinement {
         for (vertex, point) in sharpness.limits(level, self.creasing(), positions) {
             limit[vertex as usize] = point;
         }
-        Some(limit)
+        Ok(Some(limit))
     }
 }
 

@@ -4,6 +4,7 @@ use super::exceptions::{Exceptions, LevelSharpness};
 use super::sharpness::has_limit;
 use super::topology::{BoundaryEdge, Level};
 use crate::fault;
+use crate::memory::{self, OutOfMemory};
 use crate::mesh::{BoundaryRule, Creasing, FaceId, HalfEdgeId, Mesh, Polygons, SubdivisionOptions, VertexId};
 use glam::DVec3;
 
@@ -24,6 +25,9 @@ pub enum RefineError {
         /// The level asked for.
         depth: usize,
     },
+    /// There is no memory for a level.
+    #[error("{0}; a lower level needs less")]
+    Memory(#[from] OutOfMemory),
 }
 
 /// At this level the children of a single triangle outnumber 31-bit ids.
@@ -73,15 +77,17 @@ impl Refinement {
     /// Levels 0 to `depth` of `mesh`. Memory: about 45 bytes per face of every level, 30 on the last.
     ///
     /// # Errors
-    /// [`RefineError`], before any level is made.
+    /// [`RefineError`]: sizes and depths that cannot be are found before any level is made.
     pub fn new(mesh: &Mesh, depth: usize) -> Result<Self, RefineError> {
         let ids = ControlIds {
-            vertices: mesh.vertices().collect(),
-            edges: mesh.edges().collect(),
-            faces: mesh.faces().collect(),
+            vertices: memory::collected(mesh.vertex_bound(), mesh.vertices())?,
+            edges: memory::collected(mesh.half_edge_bound() / 2, mesh.edges())?,
+            faces: memory::collected(mesh.face_bound(), mesh.faces())?,
         };
-        let control = control_level(mesh, &ids);
-        let mut valences = vec![0; control.vertex_count() + control.edge_count()];
+        let control = control_level(mesh, &ids)?;
+        let mut valences =
+            memory::filled(control.vertex_count() + control.edge_count() + control.face_count(), 0)?;
+        valences.truncate(control.vertex_count() + control.edge_count());
         for &v in &control.corner_vertices {
             valences[v as usize] += 1;
         }
@@ -100,7 +106,7 @@ impl Refinement {
             let (found, next) = sharpness[level - 1].refined(parent, subdivision.creasing);
             exceptions.push(found);
             sharpness.push(next);
-            let child = parent.child(level == depth);
+            let child = parent.child(level == depth)?;
             levels.push(child);
         }
         Ok(Self { levels, valences, exceptions, sharpness, subdivision, left_out, ids })
@@ -155,9 +161,12 @@ impl Refinement {
     /// Level `level` with the given positions as polygons, which have the sharpness that is left, so that they are
     /// another control mesh of the same surface. Faces without a limit surface are holes.
     ///
+    /// # Errors
+    /// [`OutOfMemory`].
+    ///
     /// # Panics
     /// When there is no such level.
-    pub fn polygons(&self, level: usize, positions: Vec<DVec3>) -> Polygons {
+    pub fn polygons(&self, level: usize, positions: Vec<DVec3>) -> Result<Polygons, OutOfMemory> {
         let sharpness = self.sharpness(level);
         let mut subdivision = self.subdivision;
         if subdivision.boundary == BoundaryRule::None {
@@ -165,16 +174,16 @@ impl Refinement {
             subdivision.boundary = BoundaryRule::EdgeOnly;
         }
         let (number, level) = (level, self.level(level));
-        Polygons {
+        Ok(Polygons {
             positions,
-            face_sizes: level.face_sizes().collect(),
-            face_vertices: level.face_vertices().to_vec(),
+            face_sizes: memory::collected(level.face_count(), level.face_sizes())?,
+            face_vertices: memory::copied(level.face_vertices())?,
             creases: sharpness.creases().collect(),
             corners: sharpness.corners().collect(),
             holes: self.holes(number),
             subdivision,
             ..Polygons::default()
-        }
+        })
     }
 
     /// Faces of `level` that are no part of the surface, ascending.
@@ -220,7 +229,8 @@ impl Refined {
 
     /// The last level as polygons.
     pub fn into_polygons(self) -> Polygons {
-        self.refinement.polygons(self.refinement.depth(), self.positions)
+        let polygons = self.refinement.polygons(self.refinement.depth(), self.positions);
+        polygons.unwrap_or_else(|error| memory::give_up(error))
     }
 }
 
@@ -230,7 +240,7 @@ impl Refined {
 /// See [`Refinement::new`].
 pub fn refine(mesh: &Mesh, levels: usize) -> Result<Refined, RefineError> {
     let refinement = Refinement::new(mesh, levels)?;
-    let positions = refinement.positions(levels, &refinement.control_positions(mesh));
+    let positions = refinement.positions(levels, &refinement.control_positions(mesh))?;
     Ok(Refined { refinement, positions })
 }
 
@@ -251,21 +261,24 @@ fn check_size(control: &Level, depth: usize) -> Result<(), RefineError> {
     Ok(())
 }
 
-fn control_level(mesh: &Mesh, ids: &ControlIds) -> Level {
-    let mut vertex_rank = vec![u32::MAX; mesh.vertex_bound()];
+fn control_level(mesh: &Mesh, ids: &ControlIds) -> Result<Level, OutOfMemory> {
+    let mut vertex_rank = memory::filled(mesh.vertex_bound(), u32::MAX)?;
     for (rank, v) in ids.vertices.iter().enumerate() {
         vertex_rank[v.index()] = rank as u32;
     }
-    let mut edge_rank = vec![u32::MAX; mesh.half_edge_bound() / 2];
+    let mut edge_rank = memory::filled(mesh.half_edge_bound() / 2, u32::MAX)?;
     for (rank, h) in ids.edges.iter().enumerate() {
         edge_rank[h.edge() as usize] = rank as u32;
     }
     let vertex = |v: VertexId| vertex_rank[v.index()];
     let half_edge = |h: HalfEdgeId| 2 * edge_rank[h.edge() as usize] + (h.0 & 1);
 
-    let mut starts = vec![0];
-    let mut corner_vertices = Vec::with_capacity(4 * ids.faces.len());
-    let mut corner_half_edges = Vec::with_capacity(4 * ids.faces.len());
+    let mut starts = memory::room(ids.faces.len() + 1)?;
+    starts.push(0);
+    // Each edge has a half-edge at two corners at most.
+    let corners = mesh.half_edge_bound().min(2 * ids.edges.len());
+    let mut corner_vertices = memory::room(corners)?;
+    let mut corner_half_edges = memory::room(corners)?;
     for &f in &ids.faces {
         for h in mesh.face_half_edges(f) {
             corner_vertices.push(vertex(mesh.source(h)));
@@ -285,12 +298,12 @@ fn control_level(mesh: &Mesh, ids: &ControlIds) -> Level {
             previous_source: vertex(mesh.source(mesh.prev(h))),
         })
         .collect();
-    Level {
+    Ok(Level {
         vertex_count: ids.vertices.len() as u32,
         edge_count: ids.edges.len() as u32,
         starts: (!all_quads).then_some(starts),
         corner_vertices,
         corner_half_edges,
         boundary,
-    }
+    })
 }

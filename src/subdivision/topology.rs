@@ -12,6 +12,8 @@
 //!   halves, then `2 E + c` runs from the edge point of corner `c` to the face point. Half-edge `2 e` of such an edge
 //!   starts at the vertex point, or at the edge point where the edge lies inside a face.
 
+use crate::memory::{self, OutOfMemory};
+
 /// A half-edge on the outside of the surface. The surface lies on the right of it.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct BoundaryEdge {
@@ -107,14 +109,14 @@ impl Level {
 
     /// The next level. The caller has seen to it that the numbers fit into 31 bits. `last` leaves out what only a
     /// further level would need.
-    pub(super) fn child(&self, last: bool) -> Self {
+    pub(super) fn child(&self, last: bool) -> Result<Self, OutOfMemory> {
         let [vertex_count, edge_count, face_count] = self.child_counts().map(|count| count as u32);
         let mut child = Self {
             vertex_count,
             edge_count,
             starts: None,
-            corner_vertices: Vec::with_capacity(4 * face_count as usize),
-            corner_half_edges: Vec::with_capacity(if last { 0 } else { 4 * face_count as usize }),
+            corner_vertices: memory::room(4 * face_count as usize)?,
+            corner_half_edges: memory::room(if last { 0 } else { 4 * face_count as usize })?,
             boundary: Vec::new(),
         };
         if self.starts.is_none() {
@@ -122,8 +124,8 @@ impl Level {
         } else {
             self.split_polygons(&mut child, last);
         }
-        child.boundary = self.split_boundary();
-        child
+        child.boundary = self.split_boundary()?;
+        Ok(child)
     }
 
     fn split_quads(&self, child: &mut Self, last: bool) {
@@ -179,7 +181,7 @@ impl Level {
         }
     }
 
-    fn split_boundary(&self) -> Vec<BoundaryEdge> {
+    fn split_boundary(&self) -> Result<Vec<BoundaryEdge>, OutOfMemory> {
         let edge_point = |half_edge: u32| self.vertex_count + (half_edge >> 1);
         let halves = |parent: &BoundaryEdge| {
             let middle = edge_point(parent.half_edge);
@@ -201,6 +203,6 @@ impl Level {
                 },
             ]
         };
-        self.boundary.iter().flat_map(halves).collect()
+        memory::collected(2 * self.boundary.len(), self.boundary.iter().flat_map(halves))
     }
 }

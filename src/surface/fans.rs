@@ -3,6 +3,7 @@
 use super::kernel::{self, Four};
 use super::valence::{LEVELS, Tables};
 use super::{Corner, Jet};
+use crate::memory::{self, OutOfMemory};
 use crate::mesh::{HalfEdgeId, Mesh};
 use crate::subdivision::eigenvalue;
 use crate::subdivision::patch::{Evaluated, evaluate_corner};
@@ -52,6 +53,13 @@ pub(super) struct Corners {
 pub(super) struct Shared(FxHashMap<FanKey, Option<u32>>);
 
 impl Corners {
+    /// Makes room for `count` corners, whose vertices may have as many faces each.
+    pub(super) fn reserve(&mut self, count: usize) -> Result<(), OutOfMemory> {
+        memory::reserve(&mut self.fans, count)?;
+        memory::reserve(&mut self.points, 2 * count)?;
+        memory::reserve(&mut self.entries, count)
+    }
+
     /// Adds a corner and gives its number.
     pub(super) fn add(&mut self, corner: Corner, shared: &mut Shared) -> u32 {
         let known = corner.key.and_then(|key| shared.0.get(&key).copied().flatten());

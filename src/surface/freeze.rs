@@ -3,6 +3,7 @@
 use super::fans::{Corners, Shared};
 use super::places::{Entry, FaceTable, PatchPlace};
 use super::{Bicubic, LimitSurface, Patch};
+use crate::memory::{self, OutOfMemory};
 use crate::mesh::{FaceId, Mesh};
 use crate::subdivision::has_limit;
 use crate::subdivision::patch_direct::{Direct, is_smooth};
@@ -23,17 +24,17 @@ struct Freezing {
 const SLICE: usize = 256;
 
 /// Freezes `faces`, which are ascending, real and exist. `step` is told how much is done, in [0, 1], and may end it.
-pub(super) fn freeze<E>(
+pub(super) fn freeze<E: From<OutOfMemory>>(
     mesh: &Mesh,
     faces: &[FaceId],
     step: impl Fn(f64) -> Result<(), E>,
 ) -> Result<LimitSurface, E> {
     let surface = LimitSurface {
-        faces: FaceTable::with_room_for(faces),
-        places: Vec::with_capacity(faces.len()),
-        patches: Vec::with_capacity(faces.len()),
+        faces: FaceTable::with_room_for(faces)?,
+        places: memory::room(faces.len())?,
+        patches: memory::room(faces.len())?,
         parts: Vec::new(),
-        bicubics: Vec::with_capacity(faces.len()),
+        bicubics: memory::room(faces.len())?,
         corners: Corners::default(),
         index: OnceLock::new(),
         closed: true,
@@ -47,6 +48,7 @@ pub(super) fn freeze<E>(
             step(i as f64 / faces.len() as f64)?;
         }
         if has_limit(mesh, face) {
+            freezing.reserve(mesh.arity(face))?;
             freezing.add_face(mesh, faces, face);
         }
     }
@@ -54,7 +56,20 @@ pub(super) fn freeze<E>(
     Ok(freezing.finish())
 }
 
+/// Room per corner of a face; deeper splits, beside semi-sharp creases, take more.
+const ROOM: usize = 64;
+
 impl Freezing {
+    /// Makes room for the patches of a face with `arity` corners.
+    fn reserve(&mut self, arity: usize) -> Result<(), OutOfMemory> {
+        let surface = &mut self.surface;
+        memory::reserve(&mut surface.places, arity)?;
+        memory::reserve(&mut surface.patches, arity)?;
+        memory::reserve(&mut surface.parts, ROOM * arity)?;
+        memory::reserve(&mut surface.bicubics, ROOM * arity)?;
+        surface.corners.reserve(ROOM * arity)
+    }
+
     fn add_face(&mut self, mesh: &Mesh, faces: &[FaceId], face: FaceId) {
         let first = self.surface.patches.len();
         match self.smooth_quad(mesh, face) {

@@ -39,6 +39,7 @@ pub use patches::{PatchOptions, PatchReport, Patches, SplinePatch, SplinePoint};
 pub use quality::{ExtraordinaryVertex, FaceQuality, Quality};
 
 use crate::job::{Cancelled, Job};
+use crate::memory::{self, OutOfMemory};
 use crate::mesh::{FaceId, Mesh};
 use crate::subdivision::SurfacePoint;
 use crate::subdivision::patch::{Evaluated, Patch};
@@ -49,7 +50,6 @@ use glam::DVec3;
 use index::Index;
 use kernel::Plain;
 use places::{Entry, FaceTable, Located, PatchPlace};
-use std::convert::Infallible;
 use std::sync::OnceLock;
 
 /// The limit surface of a mesh or of some of its faces, frozen. See the [module](self).
@@ -71,18 +71,29 @@ pub struct LimitSurface {
     tolerance: f64,
 }
 
+/// Why a surface was not frozen.
+#[derive(Clone, Copy, PartialEq, Eq, Debug, thiserror::Error)]
+pub enum FreezeError {
+    /// The caller cancelled.
+    #[error(transparent)]
+    Cancelled(#[from] Cancelled),
+    /// There is no memory for the surface.
+    #[error(transparent)]
+    Memory(#[from] OutOfMemory),
+}
+
 /// Progress of work that nobody watches.
-fn unwatched(_: f64) -> Result<(), Infallible> {
+fn unwatched(_: f64) -> Result<(), OutOfMemory> {
     Ok(())
 }
 
 /// The real ones of `faces`, ascending, each once.
-fn existing(mesh: &Mesh, faces: &[FaceId]) -> Vec<FaceId> {
-    let mut faces: Vec<FaceId> =
-        faces.iter().copied().filter(|&f| !f.is_boundary() && mesh.has_face(f)).collect();
+fn existing(mesh: &Mesh, faces: &[FaceId]) -> Result<Vec<FaceId>, OutOfMemory> {
+    let real = faces.iter().copied().filter(|&f| !f.is_boundary() && mesh.has_face(f));
+    let mut faces = memory::collected(faces.len(), real)?;
     faces.sort_unstable();
     faces.dedup();
-    faces
+    Ok(faces)
 }
 
 impl LimitSurface {
@@ -90,24 +101,24 @@ impl LimitSurface {
     /// limit surface are left out.
     pub fn new(mesh: &Mesh) -> Self {
         let faces: Vec<FaceId> = mesh.faces().collect();
-        let Ok(frozen) = freeze::freeze(mesh, &faces, unwatched);
-        frozen
+        freeze::freeze(mesh, &faces, unwatched).unwrap_or_else(|error| memory::give_up(error))
     }
 
     /// Freezes the surface of `faces` only; boundary loops and faces that do not exist or have no limit surface are
     /// passed over. Time and
     /// memory follow the number of these faces and their neighbours, not the mesh.
     pub fn around(mesh: &Mesh, faces: &[FaceId]) -> Self {
-        let Ok(frozen) = freeze::freeze(mesh, &existing(mesh, faces), unwatched);
-        frozen
+        existing(mesh, faces)
+            .and_then(|faces| freeze::freeze(mesh, &faces, unwatched))
+            .unwrap_or_else(|error| memory::give_up(error))
     }
 
     /// [`around`](Self::around) under the eyes of a job.
     ///
     /// # Errors
-    /// [`Cancelled`].
-    pub fn around_with(mesh: &Mesh, faces: &[FaceId], job: &Job) -> Result<Self, Cancelled> {
-        freeze::freeze(mesh, &existing(mesh, faces), |done| job.step("freeze", done))
+    /// [`FreezeError`].
+    pub fn around_with(mesh: &Mesh, faces: &[FaceId], job: &Job) -> Result<Self, FreezeError> {
+        freeze::freeze(mesh, &existing(mesh, faces)?, |done| Ok(job.step("freeze", done)?))
     }
 
     /// Frozen faces, ascending.

@@ -1,6 +1,7 @@
 //! Where the patches of a face are, and where a parameter lies in them.
 
 use super::Jet;
+use crate::memory::{self, OutOfMemory};
 use crate::mesh::FaceId;
 use crate::subdivision::patch::{to_quarter, turn};
 
@@ -35,13 +36,13 @@ pub(super) enum FaceTable {
 
 impl FaceTable {
     /// For these faces, which are ascending.
-    pub(super) fn with_room_for(faces: &[FaceId]) -> Self {
+    pub(super) fn with_room_for(faces: &[FaceId]) -> Result<Self, OutOfMemory> {
         let bound = faces.last().map_or(0, |last| last.index() + 1);
-        if bound <= 4 * faces.len() {
-            Self::Dense(Vec::with_capacity(bound + 1))
+        Ok(if bound <= 4 * faces.len() {
+            Self::Dense(memory::room(bound + 1)?)
         } else {
-            Self::Sparse(Vec::with_capacity(faces.len() + 1))
-        }
+            Self::Sparse(memory::room(faces.len() + 1)?)
+        })
     }
 
     /// Faces are added in ascending order.

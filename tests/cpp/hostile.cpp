@@ -146,7 +146,7 @@ void bad_numbers() {
                 change.value = values[value];
                 change.before = [&] { before = world.content(); };
                 std::int32_t const status = function.call(world, change);
-                bool const documented = status <= WELT_OK && status >= WELT_ERROR_RULE &&
+                bool const documented = status <= WELT_OK && status >= WELT_ERROR_MEMORY &&
                                         status != WELT_ERROR_POISONED && status != WELT_ERROR_INTERNAL &&
                                         status != WELT_ERROR_CANCELLED;
                 check::that(documented, what + ": status " + std::to_string(status));

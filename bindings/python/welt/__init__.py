@@ -26,6 +26,7 @@ from .errors import (
     ParseError,
     Place,
     PoisonedError,
+    OutOfMemoryError,
     RuleError,
     TooLargeError,
 )
@@ -60,6 +61,7 @@ __all__ = [
     "Place",
     "PoisonedError",
     "Refinement",
+    "OutOfMemoryError",
     "RuleError",
     "Rules",
     "Selection",

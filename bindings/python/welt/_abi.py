@@ -29,6 +29,7 @@ CONSTANTS: Dict[str, int] = {
     "WELT_ERROR_FILE": -8,
     "WELT_ERROR_SYNTAX": -9,
     "WELT_ERROR_RULE": -10,
+    "WELT_ERROR_MEMORY": -11,
     "WELT_PLACE_WHOLE": 0,
     "WELT_PLACE_VERTEX": 1,
     "WELT_PLACE_EDGE": 2,
@@ -83,6 +84,13 @@ class FeatureOptions(ctypes.Structure):
         ("deviation", ctypes.c_uint32),
         ("parity", ctypes.c_uint32),
         ("strict", ctypes.c_uint32),
+        ("max_script_depth", ctypes.c_uint32),
+        ("max_applications", ctypes.c_uint64),
+        ("max_steps", ctypes.c_uint64),
+        ("max_changes", ctypes.c_uint64),
+        ("max_growth", ctypes.c_uint64),
+        ("max_extra_elements", ctypes.c_uint64),
+        ("max_seconds", ctypes.c_double),
     ]
 
 

@@ -107,6 +107,12 @@ class RuleError(Error):
     code = CONSTANTS["WELT_ERROR_RULE"]
 
 
+class OutOfMemoryError(Error, MemoryError):
+    """There is no memory for a large list; nothing was changed."""
+
+    code = CONSTANTS["WELT_ERROR_MEMORY"]
+
+
 _CLASSES = {kind.code: kind for kind in Error.__subclasses__()}
 _KINDS = {CONSTANTS["WELT_PLACE_" + kind.upper()]: kind for kind in ("whole", "vertex", "edge", "face")}
 

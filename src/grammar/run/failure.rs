@@ -61,6 +61,12 @@ impl Run<'_> {
             Stop::Cancelled => RunError::Cancelled(Cancelled),
             Stop::Steps => self.runaway(format!("more than {} steps", self.limits.steps), rule),
             Stop::Edits => self.runaway(format!("more than {} changes of the mesh", self.limits.edits), rule),
+            Stop::Elements => {
+                let most = self.limits.allowance(self.elements).elements;
+                let limit =
+                    format!("more than {most} vertices, edges and faces, which were {}", self.elements);
+                self.runaway(limit, rule)
+            }
             Stop::Time => {
                 let time = self.limits.time.unwrap_or_default();
                 self.runaway(format!("more than {} s", time.as_secs_f64()), rule)

@@ -11,7 +11,7 @@ use super::queue::Queue;
 use super::ruleset::{Examples, RuleSet};
 use super::search::{Search, View};
 use super::trace::{Application, Pass, Tracer, digest};
-use crate::gml::{Budget, Machine};
+use crate::gml::{Allowance, Budget, Machine};
 use crate::job::Job;
 use crate::mesh::{FaceId, Mesh, Node, Symbol};
 use std::collections::BTreeMap;
@@ -27,19 +27,37 @@ pub struct Limits {
     /// Changes that scripts make to the mesh: each element made or removed, each vertex moved, each attribute, link and
     /// sharpness set counts. Bounds the memory, about 150 bytes each at most.
     pub edits: u64,
+    /// Procedures and loops of a script that may be open inside one another.
+    pub depth: usize,
+    /// The mesh may have this many times as many vertices, edges and faces as before, together,
+    pub growth: u64,
+    /// and this many more.
+    pub extra: u64,
     /// Time; `None` for as long as it takes. A run that ends by time is not reproducible.
     pub time: Option<Duration>,
 }
 
 impl Default for Limits {
-    /// 10 million applications, 10^9 steps, 20 million changes, one minute.
+    /// 10 million applications, 10^9 steps, 20 million changes, 1000 procedures and loops, 16 times the elements and a
+    /// million more, one minute.
     fn default() -> Self {
         Self {
             applications: 10_000_000,
             steps: 1_000_000_000,
             edits: 20_000_000,
+            depth: 1000,
+            growth: 16,
+            extra: 1_000_000,
             time: Some(Duration::from_secs(60)),
         }
+    }
+}
+
+impl Limits {
+    /// What scripts may do to a mesh that has `elements` elements.
+    pub fn allowance(&self, elements: usize) -> Allowance {
+        let elements = (elements as u64).saturating_mul(self.growth).saturating_add(self.extra);
+        Allowance { steps: self.steps, edits: self.edits, elements, depth: self.depth }
     }
 }
 
@@ -140,6 +158,8 @@ pub(super) struct Run<'a> {
     pub(super) symbols: Vec<Symbol>,
     budget: Budget<'a>,
     limits: Limits,
+    /// Elements of the mesh before the run.
+    elements: usize,
     machine: Machine,
     search: Search,
     forbidden_search: Search,
@@ -167,6 +187,8 @@ impl<'a> Run<'a> {
     fn new(rules: &'a RuleSet, mesh: &'a mut Mesh, parameters: &'a [f64], options: &RunOptions<'a>) -> Self {
         let symbols = rules.names.iter().map(|name| mesh.intern(name)).collect();
         let deadline = options.limits.time.and_then(|time| Instant::now().checked_add(time));
+        let elements = mesh.element_count();
+        let allowance = options.limits.allowance(elements);
         let most_nodes = rules
             .rules
             .iter()
@@ -178,7 +200,8 @@ impl<'a> Run<'a> {
             parameters,
             examples: None,
             symbols,
-            budget: Budget::new(options.limits.steps, options.limits.edits, deadline, options.job),
+            budget: Budget::new(allowance, deadline, options.job),
+            elements,
             limits: options.limits,
             machine: Machine::new(&rules.strings),
             search: Search::default(),

@@ -3,6 +3,7 @@
 use super::read::{RANGE_REMEDY, Reader, Result, fault_at};
 use crate::io::report::{Ignored, IgnoredKind};
 use crate::io::text::{Fault, Place, shown};
+use crate::memory;
 
 /// Stands for "no texture coordinate" in `face_texcoords`.
 const NO_TEXCOORD: u32 = u32::MAX;
@@ -31,15 +32,22 @@ impl Reader<'_> {
             let corner = self.corner(line)?;
             if corner.texcoord != NO_TEXCOORD && self.polygons.face_texcoords.is_empty() {
                 // The first texture coordinate of all: the corners before it have none.
-                self.polygons.face_texcoords.resize(self.polygons.face_vertices.len(), NO_TEXCOORD);
+                let before = self.polygons.face_vertices.len();
+                memory::reserve(&mut self.polygons.face_texcoords, before)?;
+                self.polygons.face_texcoords.resize(before, NO_TEXCOORD);
             }
             if corner.texcoord != NO_TEXCOORD || !self.polygons.face_texcoords.is_empty() {
+                memory::reserve(&mut self.polygons.face_texcoords, 1)?;
                 self.polygons.face_texcoords.push(corner.texcoord);
             }
+            memory::reserve(&mut self.polygons.face_vertices, 1)?;
             self.polygons.face_vertices.push(corner.vertex);
             self.largest_vertex = self.largest_vertex.max(Some(corner.vertex));
             size += 1;
         }
+        memory::reserve(&mut self.polygons.face_sizes, 1)?;
+        memory::reserve(&mut self.lines.faces, 1)?;
+        memory::reserve(&mut self.polygons.face_sets, 1)?;
         self.polygons.face_sizes.push(size);
         self.lines.faces.push(line);
         let set = self.sets.index(&mut self.polygons);

@@ -6,7 +6,8 @@ use crate::io::error::ImportError;
 use crate::io::report::{IgnoredKind, ImportReport};
 use crate::io::source::{Lines, Source};
 use crate::io::text::{Cursor, Fault, Place, shown};
-use crate::mesh::Polygons;
+use crate::memory;
+use crate::mesh::{MOST_COORDINATE, Polygons};
 use glam::{DVec2, DVec3};
 use rustc_hash::FxHashSet;
 
@@ -25,7 +26,8 @@ pub(in crate::io) fn read(
     limits: &Limits,
 ) -> std::result::Result<Source, ImportError> {
     let mut reader = Reader::new(bytes, limits);
-    match reader.statements().and_then(|()| reader.finish()) {
+    let read = reader.reserve(bytes.len() / BYTES_PER_ELEMENT).and_then(|()| reader.statements());
+    match read.and_then(|()| reader.finish()) {
         Ok(()) => Ok(Source::new(name, reader.polygons, reader.report, reader.lines)),
         Err(fault) => Err(fault.into_error(name)),
     }
@@ -52,7 +54,7 @@ pub(super) struct Reader<'a> {
 
 impl<'a> Reader<'a> {
     fn new(bytes: &'a [u8], limits: &'a Limits) -> Self {
-        let mut reader = Self {
+        Self {
             text: Cursor::new(bytes),
             limits,
             polygons: Polygons::default(),
@@ -65,14 +67,17 @@ impl<'a> Reader<'a> {
             largest_vertex: None,
             largest_tag_vertex: None,
             largest_tag_face: None,
-        };
-        let expected = bytes.len() / BYTES_PER_ELEMENT;
-        reader.polygons.positions.reserve(expected);
-        reader.lines.vertices.reserve(expected);
-        reader.polygons.face_sizes.reserve(expected);
-        reader.polygons.face_vertices.reserve(4 * expected);
-        reader.lines.faces.reserve(expected);
-        reader
+        }
+    }
+
+    /// Makes room for as many vertices and quads.
+    fn reserve(&mut self, expected: usize) -> Result<()> {
+        memory::reserve(&mut self.polygons.positions, expected)?;
+        memory::reserve(&mut self.lines.vertices, expected)?;
+        memory::reserve(&mut self.polygons.face_sizes, expected)?;
+        memory::reserve(&mut self.polygons.face_vertices, 4 * expected)?;
+        memory::reserve(&mut self.lines.faces, expected)?;
+        Ok(())
     }
 
     /// An error at the present place.
@@ -146,6 +151,8 @@ impl<'a> Reader<'a> {
         let x = self.coordinate()?;
         let y = self.coordinate()?;
         let z = self.coordinate()?;
+        memory::reserve(&mut self.polygons.positions, 1)?;
+        memory::reserve(&mut self.lines.vertices, 1)?;
         self.polygons.positions.push(DVec3::new(x, y, z));
         self.lines.vertices.push(line);
         if self.text.next_token_on_line() {
@@ -155,13 +162,17 @@ impl<'a> Reader<'a> {
     }
 
     fn coordinate(&mut self) -> Result<f64> {
+        const RANGE: &str = "scale the model; coordinates lie between -1e50 and 1e50";
         const REMEDY: &str = "write 'v x y z' with three finite numbers";
         if !self.text.next_token_on_line() {
             return Err(self.fault("a vertex with fewer than three coordinates", REMEDY));
         }
         let place = self.text.place();
         match self.text.number() {
-            Ok(value) if value.is_finite() => Ok(value),
+            Ok(value) if value.abs() <= MOST_COORDINATE => Ok(value),
+            Ok(value) if value.is_finite() => {
+                Err(fault_at(place, format!("the coordinate {value:e} is out of range"), RANGE))
+            }
             Ok(value) => {
                 Err(fault_at(place, format!("the coordinate {value} is not a finite number"), REMEDY))
             }
@@ -222,6 +233,7 @@ impl<'a> Reader<'a> {
             self.report.ignore(IgnoredKind::ThirdTextureCoordinate, line, || "vt".into());
         }
         self.first_texcoord_line.get_or_insert(line);
+        memory::reserve(&mut self.polygons.texcoords, 1)?;
         self.polygons.texcoords.push(DVec2::new(values[0], values[1]));
         Ok(())
     }
@@ -296,5 +308,5 @@ impl<'a> Reader<'a> {
 pub(super) const RANGE_REMEDY: &str = "correct the number or add the missing vertex";
 
 pub(super) fn fault_at(place: Place, message: impl Into<String>, remedy: &'static str) -> Box<Fault> {
-    Box::new(Fault { place, message: message.into(), remedy })
+    Box::new(Fault { place, message: message.into(), remedy, memory: None })
 }

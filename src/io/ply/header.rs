@@ -67,8 +67,9 @@ impl Scalar {
 /// Reads the header; leaves `text` at the first byte of the body.
 pub(super) fn read(text: &mut Cursor) -> Result<Header, Box<Fault>> {
     const REMEDY: &str = "check that this is a PLY file (version 1.0) and that its header is whole";
-    let fault =
-        |text: &Cursor, message: String| Box::new(Fault { place: text.place(), message, remedy: REMEDY });
+    let fault = |text: &Cursor, message: String| {
+        Box::new(Fault { place: text.place(), message, remedy: REMEDY, memory: None })
+    };
     if text.token() != b"ply" {
         return Err(fault(text, "the file does not begin with 'ply'".into()));
     }

@@ -7,7 +7,8 @@ use crate::io::error::ImportError;
 use crate::io::report::{IgnoredKind, ImportReport};
 use crate::io::source::{Lines, Source};
 use crate::io::text::{Cursor, Fault, Place};
-use crate::mesh::Polygons;
+use crate::memory::{self, OutOfMemory};
+use crate::mesh::{MOST_COORDINATE, Polygons};
 use glam::DVec3;
 
 const REMEDY: &str = "check that the file is whole, or export it again";
@@ -74,14 +75,22 @@ impl Reader<'_> {
                 };
                 let place = self.place();
                 position[axis] = match self.body.scalar(property.scalar) {
-                    Ok(value) if value.is_finite() => value,
+                    Ok(value) if value.abs() <= MOST_COORDINATE => value,
                     Ok(value) => {
-                        let message = format!("the coordinate {value} is not a finite number");
+                        let message = if value.is_finite() {
+                            format!("the coordinate {value:e} is out of range, -1e50 to 1e50")
+                        } else {
+                            format!("the coordinate {value} is not a finite number")
+                        };
                         return Err(self.error(element, number, place, message));
                     }
                     Err(message) => return Err(self.error(element, number, place, message)),
                 };
             }
+            self.room(|reader| {
+                memory::reserve(&mut reader.polygons.positions, 1)?;
+                memory::reserve(&mut reader.lines.vertices, 1)
+            })?;
             self.polygons.positions.push(position);
             self.lines.vertices.extend(line);
         }
@@ -116,7 +125,13 @@ impl Reader<'_> {
                         format!("{size} vertices are more than the limit of {}", self.limits.max_arity);
                     return Err(self.error(element, number, place, message));
                 }
+                self.room(|reader| {
+                    // What the file promises is not asked for at once.
+                    memory::reserve(&mut reader.polygons.face_sizes, 1)?;
+                    memory::reserve(&mut reader.lines.faces, 1)
+                })?;
                 for _ in 0..size {
+                    self.room(|reader| memory::reserve(&mut reader.polygons.face_vertices, 1))?;
                     let place = self.place();
                     let vertex = self.body.index(property.scalar);
                     self.polygons
@@ -128,6 +143,15 @@ impl Reader<'_> {
             self.lines.faces.extend(line);
         }
         Ok(())
+    }
+
+    /// Makes room in lists.
+    #[inline]
+    fn room(
+        &mut self,
+        reserve: impl FnOnce(&mut Self) -> Result<(), OutOfMemory>,
+    ) -> Result<(), ImportError> {
+        reserve(self).map_err(|source| ImportError::Memory { file: self.name.into(), source })
     }
 
     /// Reads past an element that a mesh has no use for.
@@ -226,7 +250,7 @@ impl Reader<'_> {
     }
 
     fn text_error(&self, place: Place, message: String, remedy: &'static str) -> ImportError {
-        Fault { place, message, remedy }.into_error(self.name)
+        Fault { place, message, remedy, memory: None }.into_error(self.name)
     }
 
     fn binary_error(&self, element: String, message: String, remedy: &'static str) -> ImportError {

@@ -25,7 +25,7 @@ mod spline;
 
 pub use spline::{SplinePatch, SplinePoint};
 
-use super::LimitSurface;
+use super::{FreezeError, LimitSurface};
 use crate::job::{Cancelled, Job};
 use crate::mesh::{FaceId, Mesh};
 use cells::Component;
@@ -92,8 +92,13 @@ impl Patches {
     /// passed over.
     ///
     /// # Errors
-    /// [`Cancelled`].
-    pub fn new(mesh: &Mesh, faces: &[FaceId], options: &PatchOptions, job: &Job) -> Result<Self, Cancelled> {
+    /// [`FreezeError`].
+    pub fn new(
+        mesh: &Mesh,
+        faces: &[FaceId],
+        options: &PatchOptions,
+        job: &Job,
+    ) -> Result<Self, FreezeError> {
         const STAGE: &str = "patches";
         let surface = LimitSurface::around_with(mesh, faces, job)?;
         let components = cells::components(mesh, &surface);

@@ -606,6 +606,12 @@ impl Host<'_> {
         options.fit = self.byte() as u32 % 6;
         options.parity = self.byte() as u32 % 4;
         options.strict = u32::from(self.byte() > 200);
+        if self.byte() > 240 {
+            options.max_steps = 1 << self.byte().min(40);
+            options.max_growth = self.byte() as u64 % 4;
+            options.max_extra_elements = self.byte() as u64;
+            options.max_script_depth = self.byte() as u32;
+        }
         let (text, length) = (settings.as_ptr().cast::<c_char>(), settings.len());
         if self.byte() > 220 {
             let rules = self.pick(|host| &host.rules);

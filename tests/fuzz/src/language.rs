@@ -8,8 +8,15 @@ use welt::grammar::{Limits, RuleSet, RunOptions, Sample, Trace, run};
 use welt::mark::{Selection, Selector, place};
 use welt::mesh::{Domain, VertexId};
 
-const LIMITS: Limits =
-    Limits { applications: 200, steps: 50_000, edits: 5_000, time: Some(Duration::from_secs(2)) };
+const LIMITS: Limits = Limits {
+    applications: 200,
+    steps: 50_000,
+    edits: 5_000,
+    depth: 100,
+    growth: 8,
+    extra: 1000,
+    time: Some(Duration::from_secs(2)),
+};
 
 /// A rule file: checked, drawn, run on a marked sheet.
 pub fn rules(bytes: &[u8]) -> bool {
@@ -58,7 +65,7 @@ pub fn script(bytes: &[u8]) -> bool {
     let Ok(program) = compile(&source, &scope, &mut strings) else { return false };
     let checkpoint = mesh.begin();
     let mut machine = Machine::new(&strings);
-    let mut budget = Budget::new(LIMITS.steps, LIMITS.edits, None, None);
+    let mut budget = Budget::new(LIMITS.allowance(mesh.element_count()), None, None);
     let mut environment = Environment {
         mesh: &mut mesh,
         nodes: &[edge.0, 7],
