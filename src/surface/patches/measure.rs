@@ -8,8 +8,9 @@ use crate::mesh::{FaceId, Mesh};
 use crate::surface::LimitSurface;
 use glam::{DVec2, DVec3};
 
-/// Samples per side of a span beside an extraordinary vertex.
+/// Samples per side of a span beside an extraordinary vertex, and of the spans round that.
 const FINE: usize = 9;
+const COARSE: usize = 5;
 /// Steps towards the foot of a sample.
 const STEPS: usize = 3;
 
@@ -52,14 +53,18 @@ impl Ruler<'_> {
         let (us, vs) = (spans(&patch.knots_u), spans(&patch.knots_v));
         for (j, &[v0, v1]) in vs.iter().enumerate() {
             for (i, &[u0, u1]) in us.iter().enumerate() {
-                let corners = [[0, 0], [us.len() - 1, 0], [us.len() - 1, vs.len() - 1], [0, vs.len() - 1]];
-                let last = corners.into_iter().zip(patch.irregular).any(|(at, last)| last && at == [i, j]);
-                if !last && which == Spans::Last {
-                    continue;
-                }
+                let (end_i, end_j) = (us.len() - 1 - i, vs.len() - 1 - j);
+                let places = [(i, j), (end_i, j), (end_i, end_j), (i, end_j)];
+                // How many spans lie between this one and an extraordinary corner.
+                let steps = places.into_iter().zip(patch.irregular).filter(|&(_, irregular)| irregular);
+                let count = match steps.map(|((i, j), _)| i.max(j)).min() {
+                    Some(0) => FINE,
+                    Some(1) => COARSE,
+                    _ if which == Spans::Last => continue,
+                    _ => 1,
+                };
                 // Beside a vertex also along the sides, where patches deviate most; else in the middle.
-                let count = if last { FINE } else { 1 };
-                let share = |k: usize| if last { k as f64 / (FINE - 1) as f64 } else { 0.5 };
+                let share = |k: usize| if count > 1 { k as f64 / (count - 1) as f64 } else { 0.5 };
                 for k in 0..count * count {
                     let (x, y) = (share(k % count), share(k / count));
                     let at = DVec2::new(u0 + (u1 - u0) * x, v0 + (v1 - v0) * y);
@@ -141,29 +146,17 @@ fn edge_length(mesh: &Mesh, face: FaceId) -> f64 {
 
 /// Greatest angle in degrees between the normals of two patches along a shared side.
 pub(super) fn normal_jump(patch: &SplinePatch, side: usize, other: &SplinePatch, there: usize) -> f64 {
-    let own = if side.is_multiple_of(2) { &patch.knots_u } else { &patch.knots_v };
-    let length = own.last().copied().unwrap_or(0.0);
+    let own = patch.side_knots(side);
+    let length = patch.side_length(side).unwrap_or(0.0);
     let mut worst: f64 = 0.0;
     for [low, high] in spans(own) {
         for share in [0.0, 0.25, 0.5, 0.75, 1.0] {
             let t = low + share * (high - low);
             // Sides 2 and 3 run against the parameter, and the other patch has the side in the opposite sense.
             let along = if side < 2 { t } else { length - t };
-            let both = at_side(patch, side, along).zip(at_side(other, there, length - along));
+            let both = patch.at_side(side, along).zip(other.at_side(there, length - along));
             worst = worst.max(both.and_then(|(a, b)| angle(a, b)).unwrap_or(0.0));
         }
     }
     worst
-}
-
-/// The patch at the distance `along` from the start of a side, counter-clockwise.
-fn at_side(patch: &SplinePatch, side: usize, along: f64) -> Option<SplinePoint> {
-    let (u, v) = (*patch.knots_u.last()?, *patch.knots_v.last()?);
-    let (u, v) = match side {
-        0 => (along, 0.0),
-        1 => (u, along),
-        2 => (u - along, v),
-        _ => (0.0, v - along),
-    };
-    patch.evaluate(u, v)
 }

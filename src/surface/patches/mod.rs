@@ -14,6 +14,7 @@
 //! Where a component of the mesh has other faces than quads, all its faces are cut into quadrants first.
 
 mod cells;
+mod corners;
 mod frame;
 mod knots;
 mod lines;
@@ -28,7 +29,7 @@ pub use spline::{SplinePatch, SplinePoint};
 use super::LimitSurface;
 use crate::job::{Cancelled, Job};
 use crate::mesh::{FaceId, Mesh};
-use cells::Component;
+use cells::{Component, Side};
 use measure::{Ruler, Spans};
 use pieces::Pieces;
 use regions::Region;
@@ -126,16 +127,26 @@ impl Patches {
         let ruler = Ruler { mesh, surface, cells };
         let regular = regions.iter().all(|region| region.irregular == [false; 4]);
         let mut rings = if regular { 0 } else { *RINGS.start() };
+        let normals: Vec<_> = regions.iter().map(|region| corners::normals(surface, cells, region)).collect();
+        let smooth = |number: usize, side: usize| {
+            let Side { cell, side } = regions[number].corner(side);
+            !cells[cell].sharp[side]
+        };
         let mut patches = loop {
             let inner = knots::inner_knots(cells, rings);
             let mut patches = Vec::with_capacity(regions.len());
-            let (mut worst, mut angle): (f64, f64) = (0.0, 0.0);
             for (number, region) in regions.iter().enumerate() {
                 step(number as f64 / regions.len() as f64)?;
-                let patch = make(cells, region, &inner, pieces);
-                let found = ruler.distance(pieces, region, &patch, Spans::Last);
-                (worst, angle) = (worst.max(found.relative), angle.max(found.angle));
+                let mut patch = make(cells, region, &inner, pieces);
+                corners::flatten(&mut patch, normals[number]);
                 patches.push(patch);
+            }
+            seam::join(&mut patches, &neighbours);
+            corners::balance(&mut patches, &normals, &neighbours, smooth);
+            let (mut worst, mut angle): (f64, f64) = (0.0, 0.0);
+            for (region, patch) in regions.iter().zip(&patches) {
+                let found = ruler.distance(pieces, region, patch, Spans::Last);
+                (worst, angle) = (worst.max(found.relative), angle.max(found.angle));
             }
             let near = worst <= options.tolerance || rings >= *RINGS.end();
             let upright = angle <= ANGLE || rings >= RINGS_FOR_NORMALS;
@@ -150,8 +161,7 @@ impl Patches {
             let found = ruler.distance(pieces, region, patch, Spans::All);
             (patch.deviation, patch.relative_deviation) = (found.absolute, found.relative);
         }
-        seam::join(&mut patches, &neighbours);
-        self.report_on(&patches, &neighbours, cells, &regions);
+        self.report_on(&patches, &neighbours, smooth);
         let first = self.patches.len();
         for (patch, beyond) in patches.iter_mut().zip(neighbours) {
             patch.neighbours = beyond.map(|beyond| beyond.map(|(number, side)| (first + number, side)));
@@ -164,8 +174,7 @@ impl Patches {
         &mut self,
         patches: &[SplinePatch],
         neighbours: &seam::Neighbours,
-        cells: &[cells::Cell],
-        regions: &[Region],
+        smooth: impl Fn(usize, usize) -> bool,
     ) {
         let report = &mut self.report;
         for (number, (patch, sides)) in patches.iter().zip(neighbours).enumerate() {
@@ -173,8 +182,7 @@ impl Patches {
             report.max_relative_deviation = report.max_relative_deviation.max(patch.relative_deviation);
             for (side, beyond) in sides.iter().enumerate() {
                 let Some((other, there)) = beyond.filter(|&beyond| beyond > (number, side)) else { continue };
-                let at = regions[number].corner(side);
-                if !cells[at.cell].sharp[at.side] {
+                if smooth(number, side) {
                     let jump = measure::normal_jump(patch, side, &patches[other], there);
                     report.max_normal_jump = report.max_normal_jump.max(jump);
                 }
