@@ -118,7 +118,8 @@ impl End {
             let (_, their) = other.at_side(self.there, length - along)?.from_side(self.there);
             let tangent = tangent.try_normalize()?;
             let normal = tangent.cross(own - their).try_normalize()?;
-            let [width, width_there] = [own, their].map(|inside| inside.reject_from_normalized(tangent).length());
+            let [width, width_there] =
+                [own, their].map(|inside| inside.reject_from_normalized(tangent).length());
             let jump = normal.dot(own) / width + normal.dot(their) / width_there;
             let (first, values, _) = basis(&knots, t)?;
             let slope = 3.0 * values.get(1_usize.checked_sub(first)?)? * normal.dot(self.normal);

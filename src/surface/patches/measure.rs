@@ -23,6 +23,9 @@ pub(super) struct Distance {
     pub(super) relative: f64,
     /// Greatest angle in degrees between the normals, where the patch deviates.
     pub(super) angle: f64,
+    /// Sum of the squares of the relative distances in the spans beside extraordinary vertices, and number of samples there.
+    pub(super) squares: f64,
+    pub(super) samples: f64,
 }
 
 /// Measures patches of a surface.
@@ -36,7 +39,7 @@ pub(super) struct Ruler<'a> {
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) enum Spans {
     All,
-    /// Those beside extraordinary vertices.
+    /// The two beside extraordinary vertices.
     Last,
 }
 
@@ -68,13 +71,18 @@ impl Ruler<'_> {
                 for k in 0..count * count {
                     let (x, y) = (share(k % count), share(k / count));
                     let at = DVec2::new(u0 + (u1 - u0) * x, v0 + (v1 - v0) * y);
-                    self.sample(pieces, region, patch, at, &mut worst);
+                    let relative = self.sample(pieces, region, patch, at, &mut worst);
+                    if count > 1 {
+                        worst.squares += relative * relative;
+                        worst.samples += 1.0;
+                    }
                 }
             }
         }
         worst
     }
 
+    /// Takes a point of the patch into `worst`. Its distance in parts of the length of edges.
     fn sample(
         &self,
         pieces: &mut Pieces,
@@ -82,18 +90,19 @@ impl Ruler<'_> {
         patch: &SplinePatch,
         at: DVec2,
         worst: &mut Distance,
-    ) {
-        let Some(found) = patch.evaluate(at.x, at.y) else { return };
-        let Some(foot) = self.foot(pieces, region, at, found.position) else { return };
+    ) -> f64 {
+        let Some(found) = patch.evaluate(at.x, at.y) else { return 0.0 };
+        let Some(foot) = self.foot(pieces, region, at, found.position) else { return 0.0 };
         let far = foot.position.distance(found.position);
         if far <= self.surface.tolerance.max(1e-13 * self.surface.size) {
-            return;
+            return 0.0;
         }
         let (base, _) = patch_of(self.cells, region, at);
         let length = edge_length(self.mesh, self.surface.places[base].face);
         worst.absolute = worst.absolute.max(far);
         worst.relative = worst.relative.max(far / length);
         worst.angle = worst.angle.max(angle(found, foot).unwrap_or(0.0));
+        far / length
     }
 
     /// The nearest of the points of the surface that lie on the way from `at` to the foot of `point`; `None` at an

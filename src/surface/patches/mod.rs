@@ -5,9 +5,10 @@
 //! values of the polar form (Ramshaw 1989) of the bicubic pieces of which the surface consists (Stam 1998), so it is
 //! the surface itself. Extraordinary vertices lie at corners of rectangles only. Towards them the surface consists of
 //! rings of ever smaller pieces; the patch has knots at the edges of the first few rings (at 1/2, 1/4, 1/8 of a face) and
-//! is exact there too. Within the last ring all poles are those of the rings round it, but the corner's, which is the
-//! limit of the vertex: so that span goes on with continuous curvature, and deviates a little. As many rings are taken as
-//! bring the deviation below the tolerance.
+//! is exact there too. Within the last ring the poles continue the rings round it, except those next to the vertex: that at
+//! the corner is the limit of the vertex, those beside it along the sides lie in the tangent plane there, and those inside
+//! are raised or lowered so that the normals of the patches nearly agree along the sides. So the two
+//! innermost spans deviate a little. As many rings are taken as bring the deviation below the tolerance.
 //!
 //! Both patches at a side have the same knots along it and poles equal in every bit.
 //!
@@ -66,6 +67,8 @@ pub struct PatchReport {
     pub max_deviation: f64,
     /// The same in parts of the mean length of the edges of the face.
     pub max_relative_deviation: f64,
+    /// Root mean square of all distances measured in the two spans beside extraordinary vertices, in parts of the same length.
+    pub rms_relative_deviation: f64,
     /// Greatest angle in degrees between the normals of two patches along a shared side that is no crease.
     pub max_normal_jump: f64,
 }
@@ -101,10 +104,13 @@ impl Patches {
         let mut pieces = Pieces::new(&surface);
         let mut made = Self { patches: Vec::new(), report: PatchReport::default() };
         made.report.faces = surface.faces().count();
+        let (mut squares, mut samples) = (0.0, 0.0);
         for (number, component) in components.iter().enumerate() {
             let step = |within: f64| job.step(STAGE, (number as f64 + within) / components.len() as f64);
-            made.add(mesh, &surface, &mut pieces, component, options, step)?;
+            let of_component = made.add(mesh, &surface, &mut pieces, component, options, step)?;
+            (squares, samples) = (squares + of_component.0, samples + of_component.1);
         }
+        made.report.rms_relative_deviation = if samples > 0.0 { (squares / samples).sqrt() } else { 0.0 };
         made.report.patches = made.patches.len();
         made.report.exact = made.patches.iter().filter(|patch| patch.is_exact()).count();
         made.report.approximate = made.report.patches - made.report.exact;
@@ -112,6 +118,7 @@ impl Patches {
         Ok(made)
     }
 
+    /// Makes the patches of a component. The sum of squares of relative distances, and how many were measured.
     fn add(
         &mut self,
         mesh: &Mesh,
@@ -120,7 +127,7 @@ impl Patches {
         component: &Component,
         options: &PatchOptions,
         step: impl Fn(f64) -> Result<(), Cancelled>,
-    ) -> Result<(), Cancelled> {
+    ) -> Result<(f64, f64), Cancelled> {
         let cells = &component.cells;
         let regions = regions::regions(cells, options.most_faces.max(1).saturating_mul(component.per_side));
         let neighbours = seam::neighbours(cells, &regions);
@@ -157,9 +164,11 @@ impl Patches {
             rings = (rings + missing as u32).min(*RINGS.end());
         };
         self.report.rings = self.report.rings.max(rings);
+        let (mut squares, mut samples) = (0.0, 0.0);
         for (region, patch) in regions.iter().zip(&mut patches) {
             let found = ruler.distance(pieces, region, patch, Spans::All);
             (patch.deviation, patch.relative_deviation) = (found.absolute, found.relative);
+            (squares, samples) = (squares + found.squares, samples + found.samples);
         }
         self.report_on(&patches, &neighbours, smooth);
         let first = self.patches.len();
@@ -167,7 +176,7 @@ impl Patches {
             patch.neighbours = beyond.map(|beyond| beyond.map(|(number, side)| (first + number, side)));
         }
         self.patches.append(&mut patches);
-        Ok(())
+        Ok((squares, samples))
     }
 
     fn report_on(
