@@ -87,11 +87,11 @@ def sew(path, home, seconds):
 
 def cells(welt, cage, folder, seconds):
     """The cells of a row but the first one, and whether all is as it should be."""
-    check = subprocess.run([welt, "check", "--json", cage], capture_output=True, text=True)
+    asked = subprocess.run([welt, "check", "--json", cage], capture_output=True, text=True)
     try:
-        check = json.loads(check.stdout)
+        check = json.loads(asked.stdout)
     except ValueError:
-        return ["no: not read"], True
+        return ["no: not read: " + asked.stderr.strip()[-80:]], False
     if check["defects"]:
         kinds = sorted({defect["kind"] for defect in check["defects"]})
         return ["no: " + ", ".join(kinds)], True
