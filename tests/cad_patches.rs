@@ -56,11 +56,11 @@ fn chair(name: &str) -> Mesh {
     common::load(&Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/models").join(name))
 }
 
-/// True in the last span beside an extraordinary vertex.
+/// True in the last two spans beside an extraordinary vertex.
 fn is_last(patch: &SplinePatch, u: f64, v: f64) -> bool {
     let ends = |knots: &[f64], t: f64| {
         let count = knots.len();
-        [t <= knots[4], t >= knots[count - 5]]
+        [t <= knots[5], t >= knots[count - 6]]
     };
     let (u, v) = (ends(&patch.knots_u, u), ends(&patch.knots_v, v));
     [(0, 0), (1, 0), (1, 1), (0, 1)]
@@ -172,7 +172,7 @@ fn check_distances(name: &str, mesh: &Mesh, made: &Patches) {
             let (mut u, mut v) = (random.next() * m, random.next() * n);
             let corner = k % 4;
             if k > 3 && patch.irregular[corner] {
-                let h = patch.knots_u[4].min(patch.knots_v[4]).min(0.1);
+                let h = patch.knots_u[5].min(patch.knots_v[5]).min(0.1);
                 (u, v) = [
                     (u * h / m, v * h / n),
                     (m - u * h / m, v * h / n),

@@ -67,7 +67,7 @@ pub struct WeltPatch {
     /// Which side of that patch; WELT_NONE at the border.
     pub neighbour_sides: [u32; 4],
     /// Per corner, at which side of the same number begins, not 0 where an extraordinary vertex lies there: in the last
-    /// span beside it the patch is an approximation. Everywhere else it is the limit surface itself.
+    /// two spans beside it the patch is an approximation. Everywhere else it is the limit surface itself.
     pub irregular: [u32; 4],
     /// Greatest distance to the limit surface that was found; 0 where the patch is exact.
     pub deviation: f64,
@@ -213,7 +213,8 @@ pub unsafe extern "C" fn welt_patches_get(
 /// patches: must not be NULL.
 /// report: receives a report whose JSON has patches, exact, approximate and faces (numbers), rings (of exact pieces round
 /// extraordinary vertices), max_deviation (in units of the model), max_relative_deviation (in parts of the mean length of
-/// the edges of the control face) and max_normal_jump (greatest angle in degrees between the normals of two patches along
+/// the edges of the control face), rms_relative_deviation (root mean square of what was measured in the spans beside
+/// extraordinary vertices) and max_normal_jump (greatest angle in degrees between the normals of two patches along
 /// a side that is no crease). Free it with welt_report_free.
 ///
 /// Since: 0.1.

@@ -1,10 +1,13 @@
 """Sews patches in FreeCAD: `freecadcmd -c "import runpy; runpy.run_path('tests/freecad/sew.py')"` with the JSON files
 that `welt patches` wrote in the environment variable PATCHES, separated by colons.
 
-Prints a line of JSON per file: faces, those in no shell, shells, closed ones and how many there should be, valid, free edges
-and how many there should be, edges that more than two faces share, volume of the closed shells, seconds. FreeCAD's exit code says nothing about errors: the last line is "done"."""
+Prints a line of JSON per file: faces, those in no shell, shells, closed ones and how many there should be, valid (the whole and the solids
+of the closed shells, by OpenCASCADE's BRepCheck), free edges and how many there should be, edges that more than two faces share,
+the greatest distance between the poles of shared sides, the greatest tolerance of the sewn shape, volume of the closed shells, seconds for
+making faces and sewing, and for the checks. FreeCAD's exit code says nothing about errors: the last line is "done"."""
 
 import json
+import math
 import os
 import time
 
@@ -41,12 +44,31 @@ def closed_components(patches):
     return count
 
 
+def side(patch, number):
+    """The poles of a side, counter-clockwise."""
+    m, n = patch["pole_counts"]
+    places = [range(m), range(m - 1, m * n, m), range(m * n - 1, m * (n - 1) - 1, -1), range(m * (n - 1), -1, -m)]
+    return [patch["poles"][place] for place in places[number]]
+
+
+def gap(patches):
+    """Greatest distance between poles of sides that two patches share."""
+    worst = 0.0
+    for patch in patches:
+        for number, beyond in enumerate(patch["neighbours"]):
+            if beyond is not None:
+                theirs = reversed(side(patches[beyond[0]], beyond[1]))
+                worst = max([worst] + [math.dist(a, b) for a, b in zip(side(patch, number), theirs, strict=True)])
+    return worst
+
+
 def sew(path):
     with open(path) as file:
         patches = json.load(file)["patches"]
     start = time.time()
     shape = Part.Compound([face(patch) for patch in patches])
     shape.sewShape()
+    sewn = time.time()
     shells = shape.Shells
     loose = len(shape.Faces) - sum(len(shell.Faces) for shell in shells)
     uses = {}
@@ -54,20 +76,23 @@ def sew(path):
         for edge in each.Edges:
             if not edge.Degenerated:
                 uses[edge.hashCode()] = uses.get(edge.hashCode(), 0) + 1
-    closed = [shell.isClosed() for shell in shells]
+    solids = [Part.Solid(shell) for shell in shells if shell.isClosed()]
     return {
         "file": os.path.basename(path),
         "faces": len(shape.Faces),
         "loose": loose,
         "shells": len(shells),
-        "closed": sum(closed),
+        "closed": len(solids),
         "closed_components": closed_components(patches),
-        "valid": shape.isValid(),
+        "valid": shape.isValid() and all(solid.isValid() for solid in solids),
         "free_edges": sum(count == 1 for count in uses.values()),
         "borders": sum(beyond is None for patch in patches for beyond in patch["neighbours"]),
         "crowded_edges": sum(count > 2 for count in uses.values()),
-        "volume": sum(abs(Part.Solid(shell).Volume) for shell, ok in zip(shells, closed) if ok),
-        "seconds": round(time.time() - start, 2),
+        "gap": gap(patches),
+        "tolerance": shape.getTolerance(1),
+        "volume": sum(abs(solid.Volume) for solid in solids),
+        "sewing_seconds": round(sewn - start, 2),
+        "checking_seconds": round(time.time() - sewn, 2),
     }
 
 

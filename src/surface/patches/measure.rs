@@ -8,8 +8,9 @@ use crate::mesh::{FaceId, Mesh};
 use crate::surface::LimitSurface;
 use glam::{DVec2, DVec3};
 
-/// Samples per side of a span beside an extraordinary vertex.
+/// Samples per side of a span beside an extraordinary vertex, and of the spans round that.
 const FINE: usize = 9;
+const COARSE: usize = 5;
 /// Steps towards the foot of a sample.
 const STEPS: usize = 3;
 
@@ -22,6 +23,9 @@ pub(super) struct Distance {
     pub(super) relative: f64,
     /// Greatest angle in degrees between the normals, where the patch deviates.
     pub(super) angle: f64,
+    /// Sum of the squares of the relative distances in the spans beside extraordinary vertices, and number of samples there.
+    pub(super) squares: f64,
+    pub(super) samples: f64,
 }
 
 /// Measures patches of a surface.
@@ -35,7 +39,7 @@ pub(super) struct Ruler<'a> {
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) enum Spans {
     All,
-    /// Those beside extraordinary vertices.
+    /// The two beside extraordinary vertices.
     Last,
 }
 
@@ -52,24 +56,33 @@ impl Ruler<'_> {
         let (us, vs) = (spans(&patch.knots_u), spans(&patch.knots_v));
         for (j, &[v0, v1]) in vs.iter().enumerate() {
             for (i, &[u0, u1]) in us.iter().enumerate() {
-                let corners = [[0, 0], [us.len() - 1, 0], [us.len() - 1, vs.len() - 1], [0, vs.len() - 1]];
-                let last = corners.into_iter().zip(patch.irregular).any(|(at, last)| last && at == [i, j]);
-                if !last && which == Spans::Last {
-                    continue;
-                }
+                let (end_i, end_j) = (us.len() - 1 - i, vs.len() - 1 - j);
+                let places = [(i, j), (end_i, j), (end_i, end_j), (i, end_j)];
+                // How many spans lie between this one and an extraordinary corner.
+                let steps = places.into_iter().zip(patch.irregular).filter(|&(_, irregular)| irregular);
+                let count = match steps.map(|((i, j), _)| i.max(j)).min() {
+                    Some(0) => FINE,
+                    Some(1) => COARSE,
+                    _ if which == Spans::Last => continue,
+                    _ => 1,
+                };
                 // Beside a vertex also along the sides, where patches deviate most; else in the middle.
-                let count = if last { FINE } else { 1 };
-                let share = |k: usize| if last { k as f64 / (FINE - 1) as f64 } else { 0.5 };
+                let share = |k: usize| if count > 1 { k as f64 / (count - 1) as f64 } else { 0.5 };
                 for k in 0..count * count {
                     let (x, y) = (share(k % count), share(k / count));
                     let at = DVec2::new(u0 + (u1 - u0) * x, v0 + (v1 - v0) * y);
-                    self.sample(pieces, region, patch, at, &mut worst);
+                    let relative = self.sample(pieces, region, patch, at, &mut worst);
+                    if count > 1 {
+                        worst.squares += relative * relative;
+                        worst.samples += 1.0;
+                    }
                 }
             }
         }
         worst
     }
 
+    /// Takes a point of the patch into `worst`. Its distance in parts of the length of edges.
     fn sample(
         &self,
         pieces: &mut Pieces,
@@ -77,18 +90,19 @@ impl Ruler<'_> {
         patch: &SplinePatch,
         at: DVec2,
         worst: &mut Distance,
-    ) {
-        let Some(found) = patch.evaluate(at.x, at.y) else { return };
-        let Some(foot) = self.foot(pieces, region, at, found.position) else { return };
+    ) -> f64 {
+        let Some(found) = patch.evaluate(at.x, at.y) else { return 0.0 };
+        let Some(foot) = self.foot(pieces, region, at, found.position) else { return 0.0 };
         let far = foot.position.distance(found.position);
         if far <= self.surface.tolerance.max(1e-13 * self.surface.size) {
-            return;
+            return 0.0;
         }
         let (base, _) = patch_of(self.cells, region, at);
         let length = edge_length(self.mesh, self.surface.places[base].face);
         worst.absolute = worst.absolute.max(far);
         worst.relative = worst.relative.max(far / length);
         worst.angle = worst.angle.max(angle(found, foot).unwrap_or(0.0));
+        far / length
     }
 
     /// The nearest of the points of the surface that lie on the way from `at` to the foot of `point`; `None` at an
@@ -141,29 +155,17 @@ fn edge_length(mesh: &Mesh, face: FaceId) -> f64 {
 
 /// Greatest angle in degrees between the normals of two patches along a shared side.
 pub(super) fn normal_jump(patch: &SplinePatch, side: usize, other: &SplinePatch, there: usize) -> f64 {
-    let own = if side.is_multiple_of(2) { &patch.knots_u } else { &patch.knots_v };
-    let length = own.last().copied().unwrap_or(0.0);
+    let own = patch.side_knots(side);
+    let length = patch.side_length(side).unwrap_or(0.0);
     let mut worst: f64 = 0.0;
     for [low, high] in spans(own) {
         for share in [0.0, 0.25, 0.5, 0.75, 1.0] {
             let t = low + share * (high - low);
             // Sides 2 and 3 run against the parameter, and the other patch has the side in the opposite sense.
             let along = if side < 2 { t } else { length - t };
-            let both = at_side(patch, side, along).zip(at_side(other, there, length - along));
+            let both = patch.at_side(side, along).zip(other.at_side(there, length - along));
             worst = worst.max(both.and_then(|(a, b)| angle(a, b)).unwrap_or(0.0));
         }
     }
     worst
-}
-
-/// The patch at the distance `along` from the start of a side, counter-clockwise.
-fn at_side(patch: &SplinePatch, side: usize, along: f64) -> Option<SplinePoint> {
-    let (u, v) = (*patch.knots_u.last()?, *patch.knots_v.last()?);
-    let (u, v) = match side {
-        0 => (along, 0.0),
-        1 => (u, along),
-        2 => (u - along, v),
-        _ => (0.0, v - along),
-    };
-    patch.evaluate(u, v)
 }

@@ -5,15 +5,17 @@
 //! values of the polar form (Ramshaw 1989) of the bicubic pieces of which the surface consists (Stam 1998), so it is
 //! the surface itself. Extraordinary vertices lie at corners of rectangles only. Towards them the surface consists of
 //! rings of ever smaller pieces; the patch has knots at the edges of the first few rings (at 1/2, 1/4, 1/8 of a face) and
-//! is exact there too. Within the last ring all poles are those of the rings round it, but the corner's, which is the
-//! limit of the vertex: so that span goes on with continuous curvature, and deviates a little. As many rings are taken as
-//! bring the deviation below the tolerance.
+//! is exact there too. Within the last ring the poles continue the rings round it, except those next to the vertex: that at
+//! the corner is the limit of the vertex, those beside it along the sides lie in the tangent plane there, and those inside
+//! are raised or lowered so that the normals of the patches nearly agree along the sides. So the two
+//! innermost spans deviate a little. As many rings are taken as bring the deviation below the tolerance.
 //!
 //! Both patches at a side have the same knots along it and poles equal in every bit.
 //!
 //! Where a component of the mesh has other faces than quads, all its faces are cut into quadrants first.
 
 mod cells;
+mod corners;
 mod frame;
 mod knots;
 mod lines;
@@ -28,7 +30,7 @@ pub use spline::{SplinePatch, SplinePoint};
 use super::{FreezeError, LimitSurface};
 use crate::job::{Cancelled, Job};
 use crate::mesh::{FaceId, Mesh};
-use cells::Component;
+use cells::{Component, Side};
 use measure::{Ruler, Spans};
 use pieces::Pieces;
 use regions::Region;
@@ -65,6 +67,8 @@ pub struct PatchReport {
     pub max_deviation: f64,
     /// The same in parts of the mean length of the edges of the face.
     pub max_relative_deviation: f64,
+    /// Root mean square of all distances measured in the two spans beside extraordinary vertices, in parts of the same length.
+    pub rms_relative_deviation: f64,
     /// Greatest angle in degrees between the normals of two patches along a shared side that is no crease.
     pub max_normal_jump: f64,
 }
@@ -105,10 +109,13 @@ impl Patches {
         let mut pieces = Pieces::new(&surface);
         let mut made = Self { patches: Vec::new(), report: PatchReport::default() };
         made.report.faces = surface.faces().count();
+        let (mut squares, mut samples) = (0.0, 0.0);
         for (number, component) in components.iter().enumerate() {
             let step = |within: f64| job.step(STAGE, (number as f64 + within) / components.len() as f64);
-            made.add(mesh, &surface, &mut pieces, component, options, step)?;
+            let of_component = made.add(mesh, &surface, &mut pieces, component, options, step)?;
+            (squares, samples) = (squares + of_component.0, samples + of_component.1);
         }
+        made.report.rms_relative_deviation = if samples > 0.0 { (squares / samples).sqrt() } else { 0.0 };
         made.report.patches = made.patches.len();
         made.report.exact = made.patches.iter().filter(|patch| patch.is_exact()).count();
         made.report.approximate = made.report.patches - made.report.exact;
@@ -116,6 +123,7 @@ impl Patches {
         Ok(made)
     }
 
+    /// Makes the patches of a component. The sum of squares of relative distances, and how many were measured.
     fn add(
         &mut self,
         mesh: &Mesh,
@@ -124,23 +132,33 @@ impl Patches {
         component: &Component,
         options: &PatchOptions,
         step: impl Fn(f64) -> Result<(), Cancelled>,
-    ) -> Result<(), Cancelled> {
+    ) -> Result<(f64, f64), Cancelled> {
         let cells = &component.cells;
         let regions = regions::regions(cells, options.most_faces.max(1).saturating_mul(component.per_side));
         let neighbours = seam::neighbours(cells, &regions);
         let ruler = Ruler { mesh, surface, cells };
         let regular = regions.iter().all(|region| region.irregular == [false; 4]);
         let mut rings = if regular { 0 } else { *RINGS.start() };
+        let normals: Vec<_> = regions.iter().map(|region| corners::normals(surface, cells, region)).collect();
+        let smooth = |number: usize, side: usize| {
+            let Side { cell, side } = regions[number].corner(side);
+            !cells[cell].sharp[side]
+        };
         let mut patches = loop {
             let inner = knots::inner_knots(cells, rings);
             let mut patches = Vec::with_capacity(regions.len());
-            let (mut worst, mut angle): (f64, f64) = (0.0, 0.0);
             for (number, region) in regions.iter().enumerate() {
                 step(number as f64 / regions.len() as f64)?;
-                let patch = make(cells, region, &inner, pieces);
-                let found = ruler.distance(pieces, region, &patch, Spans::Last);
-                (worst, angle) = (worst.max(found.relative), angle.max(found.angle));
+                let mut patch = make(cells, region, &inner, pieces);
+                corners::flatten(&mut patch, normals[number]);
                 patches.push(patch);
+            }
+            seam::join(&mut patches, &neighbours);
+            corners::balance(&mut patches, &normals, &neighbours, smooth);
+            let (mut worst, mut angle): (f64, f64) = (0.0, 0.0);
+            for (region, patch) in regions.iter().zip(&patches) {
+                let found = ruler.distance(pieces, region, patch, Spans::Last);
+                (worst, angle) = (worst.max(found.relative), angle.max(found.angle));
             }
             let near = worst <= options.tolerance || rings >= *RINGS.end();
             let upright = angle <= ANGLE || rings >= RINGS_FOR_NORMALS;
@@ -151,26 +169,26 @@ impl Patches {
             rings = (rings + missing as u32).min(*RINGS.end());
         };
         self.report.rings = self.report.rings.max(rings);
+        let (mut squares, mut samples) = (0.0, 0.0);
         for (region, patch) in regions.iter().zip(&mut patches) {
             let found = ruler.distance(pieces, region, patch, Spans::All);
             (patch.deviation, patch.relative_deviation) = (found.absolute, found.relative);
+            (squares, samples) = (squares + found.squares, samples + found.samples);
         }
-        seam::join(&mut patches, &neighbours);
-        self.report_on(&patches, &neighbours, cells, &regions);
+        self.report_on(&patches, &neighbours, smooth);
         let first = self.patches.len();
         for (patch, beyond) in patches.iter_mut().zip(neighbours) {
             patch.neighbours = beyond.map(|beyond| beyond.map(|(number, side)| (first + number, side)));
         }
         self.patches.append(&mut patches);
-        Ok(())
+        Ok((squares, samples))
     }
 
     fn report_on(
         &mut self,
         patches: &[SplinePatch],
         neighbours: &seam::Neighbours,
-        cells: &[cells::Cell],
-        regions: &[Region],
+        smooth: impl Fn(usize, usize) -> bool,
     ) {
         let report = &mut self.report;
         for (number, (patch, sides)) in patches.iter().zip(neighbours).enumerate() {
@@ -178,8 +196,7 @@ impl Patches {
             report.max_relative_deviation = report.max_relative_deviation.max(patch.relative_deviation);
             for (side, beyond) in sides.iter().enumerate() {
                 let Some((other, there)) = beyond.filter(|&beyond| beyond > (number, side)) else { continue };
-                let at = regions[number].corner(side);
-                if !cells[at.cell].sharp[at.side] {
+                if smooth(number, side) {
                     let jump = measure::normal_jump(patch, side, &patches[other], there);
                     report.max_normal_jump = report.max_normal_jump.max(jump);
                 }

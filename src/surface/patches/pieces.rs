@@ -117,10 +117,14 @@ impl<'a> Pieces<'a> {
         index: [usize; 2],
     ) -> Option<DVec3> {
         let Some(span) = free_span(region, knots, index) else {
-            let end = |axis: usize| if index[axis] == 0 { 0.0 } else { region.size[axis] as f64 };
-            let (patch, frame) = patch_of(cells, region, DVec2::new(end(0), end(1)));
-            let local = frame.local(DVec2::new(end(0), end(1)));
-            return Some(self.surface.evaluate_patch(patch, local.x, local.y).position);
+            let corner = match index.map(|index| index == 0) {
+                [true, true] => 0,
+                [false, true] => 1,
+                [false, false] => 2,
+                [true, false] => 3,
+            };
+            let (patch, at) = corner_of(cells, region, corner);
+            return Some(self.surface.evaluate_patch(patch, at.x, at.y).position);
         };
         let middle = |axis: usize| 0.5 * (knots[axis][span[axis]] + knots[axis][span[axis] + 1]);
         let (piece, frame) = self.find(cells, region, DVec2::new(middle(0), middle(1)))?;
@@ -140,6 +144,14 @@ pub(super) fn patch_of(cells: &[Cell], region: &Region, at: DVec2) -> (usize, Fr
     let Side { cell, side } = region.at(i, j);
     let cell = &cells[cell];
     (cell.patch, cell.patch_frame(Frame::unit(i, j).turned(4 - side)))
+}
+
+/// The patch of the surface at a corner of a region, and where in it the corner lies.
+pub(super) fn corner_of(cells: &[Cell], region: &Region, corner: usize) -> (usize, DVec2) {
+    let [m, n] = region.size.map(|count| count as f64);
+    let at = [DVec2::ZERO, DVec2::new(m, 0.0), DVec2::new(m, n), DVec2::new(0.0, n)][corner % 4];
+    let (patch, frame) = patch_of(cells, region, at);
+    (patch, frame.local(at))
 }
 
 /// A span for a pole, in its support and near the middle, that is no last one beside an extraordinary vertex.

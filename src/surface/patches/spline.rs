@@ -21,7 +21,7 @@ pub struct SplinePatch {
     /// same poles, in opposite order.
     pub neighbours: [Option<(usize, usize)>; 4],
     /// Per corner, from that at the first u and v counter-clockwise: whether it lies at an extraordinary vertex. In
-    /// the last span beside such a corner the patch is an approximation, everywhere else exact.
+    /// the last two spans beside such a corner the patch is an approximation, everywhere else exact.
     pub irregular: [bool; 4],
     /// Greatest distance to the limit surface that was found, in units of the model; 0 where the patch is exact.
     pub deviation: f64,
@@ -40,9 +40,21 @@ pub struct SplinePoint {
     pub dv: DVec3,
 }
 
+impl SplinePoint {
+    /// The derivatives along a side, in its sense, and from it inwards.
+    pub(super) fn from_side(self, side: usize) -> (DVec3, DVec3) {
+        match side % 4 {
+            0 => (self.du, self.dv),
+            1 => (self.dv, -self.du),
+            2 => (-self.du, -self.dv),
+            _ => (-self.dv, self.du),
+        }
+    }
+}
+
 /// Number of the span in which `t` lies, from the first one that has a length, and the values and derivatives of the four
 /// basis functions there (de Boor 1972).
-fn basis(knots: &[f64], t: f64) -> Option<(usize, [f64; 4], [f64; 4])> {
+pub(super) fn basis(knots: &[f64], t: f64) -> Option<(usize, [f64; 4], [f64; 4])> {
     // The starts of spans.
     let starts = knots.get(3..knots.len().checked_sub(4)?)?;
     let span = starts.partition_point(|&knot| knot <= t).max(1) - 1;
@@ -109,5 +121,27 @@ impl SplinePatch {
             2 => (0..m).rev().map(|i| (n - 1) * m + i).collect(),
             _ => (0..n).rev().map(|j| j * m).collect(),
         }
+    }
+
+    /// The length of a side in units of the parameter.
+    pub(super) fn side_length(&self, side: usize) -> Option<f64> {
+        self.side_knots(side).last().copied()
+    }
+
+    /// The knots along side `side`, in the sense of the parameter.
+    pub(super) fn side_knots(&self, side: usize) -> &[f64] {
+        if side.is_multiple_of(2) { &self.knots_u } else { &self.knots_v }
+    }
+
+    /// The patch at the distance `along` from the start of a side, counter-clockwise, in units of the parameter.
+    pub(super) fn at_side(&self, side: usize, along: f64) -> Option<SplinePoint> {
+        let (u, v) = (*self.knots_u.last()?, *self.knots_v.last()?);
+        let (u, v) = match side % 4 {
+            0 => (along, 0.0),
+            1 => (u, along),
+            2 => (u - along, v),
+            _ => (0.0, v - along),
+        };
+        self.evaluate(u, v)
     }
 }

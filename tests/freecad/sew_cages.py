@@ -1,0 +1,156 @@
+"""Sews the patches of cages in FreeCAD and prints a row of a Markdown table for each, as soon as it is known:
+`python3 tests/freecad/sew_cages.py [--welt target/release/welt] [--seconds 600] CAGE.obj ...`
+
+A cage is clean when `welt check` finds no defect, border or face without an area. A row fails where the closed shells are not as many as
+the components without a border, are invalid, have another volume than the limit surface, or where edges are left open that
+should not be; the exit code is 1 then. The volume to compare with is that of the limit points of refined cages (`welt limit`), by the
+divergence theorem, extrapolated from two levels."""
+
+import argparse
+import json
+import os
+import subprocess
+import sys
+import tempfile
+
+HERE = os.path.dirname(os.path.abspath(__file__))
+# Faces of the finer refinement, roughly.
+FINE = 150_000
+# What the extrapolation is good for, relative.
+VOLUME = 1e-4
+HEAD = "cage|clean|faces|extraordinary|patches|rings|deviation|rms|normals, degrees|closed shells|borders left open|valid|tolerance|volume error|seconds|result"
+
+
+def read(path):
+    """Vertices and faces of an OBJ file."""
+    vertices, faces = [], []
+    with open(path) as file:
+        for line in file:
+            if line.startswith("v "):
+                vertices.append([float(word) for word in line.split()[1:4]])
+            elif line.startswith("f "):
+                faces.append([int(word.split("/")[0]) - 1 for word in line.split()[1:]])
+    return vertices, faces
+
+
+def volume(path):
+    """Sum of the volumes of the components without a border."""
+    vertices, faces = read(path)
+    first = list(range(len(vertices)))
+
+    def find(at):
+        while first[at] != at:
+            first[at] = first[first[at]]
+            at = first[at]
+        return at
+
+    # Components hang together across edges; where they touch in a vertex only, the library keeps them apart as well.
+    edges = {}
+    for face in faces:
+        for a, b in zip(face, face[1:] + face[:1]):
+            edges[min(a, b), max(a, b)] = edges.get((min(a, b), max(a, b)), 0) + 1
+            first[find(a)] = find(b)
+    opened = {find(a) for (a, b), count in edges.items() if count == 1}
+    found = {}
+    for face in faces:
+        component = find(face[0])
+        # Six times the volume of the pyramids from the component's own vertex, which keeps numbers small.
+        origin = vertices[component]
+        corners = [[x - o for x, o in zip(vertices[corner], origin)] for corner in face]
+        (ax, ay, az), rest = corners[0], corners[1:]
+        for (bx, by, bz), (cx, cy, cz) in zip(rest, rest[1:]):
+            six = ax * (by * cz - bz * cy) + ay * (bz * cx - bx * cz) + az * (bx * cy - by * cx)
+            found[component] = found.get(component, 0.0) + six
+    return sum(abs(six) / 6 for component, six in found.items() if component not in opened)
+
+
+def expected_volume(welt, cage, faces, folder):
+    level = 2
+    while faces * 4 ** (level + 1) < FINE and level < 6:
+        level += 1
+    found = []
+    for each in (level - 1, level):
+        output = os.path.join(folder, "limit.obj")
+        subprocess.run([welt, "limit", cage, "-o", output, "--level", str(each)], check=True, capture_output=True)
+        found.append(volume(output))
+    return found[1] + (found[1] - found[0]) / 3
+
+
+def sew(path, home, seconds):
+    script = f"import runpy; runpy.run_path({os.path.join(HERE, 'sew.py')!r})"
+    environment = dict(os.environ, HOME=home, PATCHES=path)
+    command = ["freecadcmd", "-c", script]
+    ran = subprocess.run(command, env=environment, stdin=subprocess.DEVNULL, capture_output=True, timeout=seconds, text=True)
+    lines = [line[5:] for line in ran.stdout.splitlines() if line.startswith("sewn ")]
+    return json.loads(lines[0]) if lines else None
+
+
+def cells(welt, cage, folder, seconds):
+    """The cells of a row but the first one, and whether all is as it should be."""
+    asked = subprocess.run([welt, "check", "--json", cage], capture_output=True, text=True)
+    try:
+        check = json.loads(asked.stdout)
+    except ValueError:
+        return ["no: not read: " + asked.stderr.strip()[-80:]], False
+    if check["defects"]:
+        kinds = sorted({defect["kind"] for defect in check["defects"]})
+        return ["no: " + ", ".join(kinds)], True
+    if not check["faces"]:
+        return ["no: no faces"], True
+    why = ["border"] * bool(check["boundaries"]) + ["faces without area"] * bool(check["zero_area_faces"])
+    clean = "no: " + ", ".join(why) if why else "yes"
+    path = os.path.join(folder, "patches.json")
+    made = subprocess.run([welt, "patches", cage, "-o", path], capture_output=True, text=True, timeout=seconds)
+    if made.returncode:
+        return [clean, made.stderr.strip().splitlines()[-1]], False
+    with open(path) as file:
+        content = json.load(file)
+    report, patches = content["report"], content["patches"]
+    corners = set()
+    for patch in patches:
+        m, n = patch["pole_counts"]
+        for corner, place in enumerate([0, m - 1, m * n - 1, m * (n - 1)]):
+            if patch["irregular"][corner]:
+                corners.add(tuple(patch["poles"][place]))
+    row = [clean, report["faces"], len(corners), report["patches"], report["rings"]]
+    row += [f"{report['max_relative_deviation']:.1e}", f"{report['rms_relative_deviation']:.1e}", f"{report['max_normal_jump']:.2f}"]
+    try:
+        found = sew(path, folder, seconds)
+    except subprocess.TimeoutExpired:
+        return row + [f"not sewn in {seconds} s"], False
+    if found is None:
+        return row + ["FreeCAD failed"], False
+    row.append(f"{found['closed']} / {found['closed_components']}")
+    row.append(f"{found['free_edges']} / {found['borders']}")
+    row += ["yes" if found["valid"] else "no", f"{found['tolerance']:.0e}"]
+    good = found["valid"] and found["gap"] == 0 and found["closed"] == found["closed_components"]
+    # Borders of components that touch are sewn together.
+    good = good and found["free_edges"] <= found["borders"] and not (found["crowded_edges"] or found["loose"] and clean == "yes")
+    wanted = expected_volume(welt, cage, report["faces"], folder)
+    error = abs(found["volume"] - wanted) / wanted if wanted else abs(found["volume"])
+    good = good and error < VOLUME
+    row += [f"{error:.0e}", f"{found['sewing_seconds']:.1f} + {found['checking_seconds']:.1f}"]
+    return row + ["good" if good else "BAD"], good
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--welt", default=os.path.join(HERE, "../../target/release/welt"))
+    parser.add_argument("--seconds", type=float, default=600)
+    parser.add_argument("cages", nargs="+")
+    options = parser.parse_args()
+    print("|" + HEAD + "|\n" + "|---" * (HEAD.count("|") + 1) + "|", flush=True)
+    failed = 0
+    for cage in options.cages:
+        with tempfile.TemporaryDirectory() as folder:
+            try:
+                row, good = cells(options.welt, cage, folder, options.seconds)
+            except (subprocess.SubprocessError, OSError) as error:
+                row, good = [f"failed: {error}"[:200]], False
+        failed += not good
+        name = os.path.splitext(os.path.basename(cage))[0]
+        print("| " + " | ".join(str(cell) for cell in [name, *row]) + " |", flush=True)
+    return 1 if failed else 0
+
+
+sys.exit(main())
