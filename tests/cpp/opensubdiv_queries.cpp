@@ -1,199 +1,219 @@
-// Closest points and line hits against an independent search over OpenSubdiv's limit surface: its points at the spacing of
-// level 4 in a tree find the candidates, those at the spacing of level 8 decide.
+// Queries against an independent search over OpenSubdiv's limit surface, see opensubdiv_oracle.hpp. What welt finds must be a point
+// of OpenSubdiv's surface; no point of the fine tessellation may be closer; every hit of its triangles that is not grazing must
+// have one of welt's beside it; and the sign of distances must be that of its winding number.
 //
-// What welt finds must be a point of OpenSubdiv's surface; no point of the fine tessellation may be closer; and every hit of its
-// triangles that is not grazing must have one of welt's beside it. The number of queries of each class over all shapes is 2,000,
-// or the argument of the program (100,000 takes some minutes).
+// Ten tagged shapes and ten cages; 2,000 queries of each class over all, or as many as the argument says. Signed distances are
+// asked of those that are closed. The table at the end has per class how many were asked, how many points found, how many of
+// these compared, the largest difference in parts of the size, and how many answers are wrong.
 
 #include "check.hpp"
 #include "models.hpp"
-#include "opensubdiv.hpp"
+#include "opensubdiv_oracle.hpp"
 
-#include <opensubdiv/bfr/refinerSurfaceFactory.h>
-
-#include <algorithm>
-#include <array>
 #include <cstdlib>
 #include <limits>
 #include <random>
 
 namespace {
 
-namespace Bfr = OpenSubdiv::Bfr;
-using BfrSurface = Bfr::Surface<double>;
 constexpr int shapes = 20;
-constexpr int coarse = 16, fine = 16;  // cells per side of a face, and of a cell
 int tagged_tested = 0, cages_tested = 0;
 std::size_t queries_per_shape = 100;
-std::size_t points_asked = 0, lines_asked = 0, hits_compared = 0;
-double largest_gap = 0, largest_off = 0;
+double largest_off = 0;
 
-struct Box {
-    Vector low{1e300, 1e300, 1e300}, high{-1e300, -1e300, -1e300};
-    void add(Vector const& p) {
-        low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
-        high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
-    }
-    double distance_to(Vector const& p) const {
-        auto const gap = [](double from, double to, double x) { return std::max({from - x, x - to, 0.0}); };
-        return length(Vector{gap(low.x, high.x, p.x), gap(low.y, high.y, p.y), gap(low.z, high.z, p.z)});
-    }
-    bool meets(Vector const& o, Vector const& d) const {
-        double enter = -1e300, leave = 1e300;
-        auto const slab = [&](double from, double to, double start, double way) {
-            if (way == 0) return from <= start && start <= to;
-            double const a = (from - start) / way, b = (to - start) / way;
-            enter = std::max(enter, std::min(a, b));
-            leave = std::min(leave, std::max(a, b));
-            return true;
-        };
-        return slab(low.x, high.x, o.x, d.x) && slab(low.y, high.y, o.y, d.y) && slab(low.z, high.z, o.z, d.z) && enter <= leave;
+// What was asked of one class of queries, how often welt found something, with how much that was compared, and how much the
+// answers differ at most, in parts of the size.
+struct Class {
+    char const* name;
+    std::size_t asked = 0, answered = 0, compared = 0;
+    double worst = 0;
+    int missed = 0;
+
+    void that(bool holds, std::string const& what) {
+        check::that(holds, what);
+        missed += holds ? 0 : 1;
     }
 };
+Class closest{"closest point"}, with_start{"closest point, with a start"}, with_radius{"closest point, with a radius"},
+    all_hits{"all hits of a line"}, first_hit{"first hit of a ray"}, signed_distance{"signed distance"};
 
-// OpenSubdiv's limit surface, face by face.
-struct Oracle {
-    std::unique_ptr<Far::TopologyRefiner> refiner;
-    std::vector<BfrSurface> surfaces;
-    std::vector<std::vector<double>> points;
-    struct Cell {
-        int face, corner;
-        double u, v;
+using Points = std::vector<welt_surface_point>;
+
+Vector position_of(welt_surface_point const& point) { return {point.position[0], point.position[1], point.position[2]}; }
+
+// One shape, its oracle, and what is asked.
+struct Shape {
+    std::string name;
+    Oracle oracle;
+    welt::Surface surface;
+    double size;
+    std::vector<Vector> points, lines;
+
+    Shape(std::string name_, Polygons const& polygons, Mesh const& mesh)
+        : name(std::move(name_)), oracle(polygons), surface(mesh.freeze()) {
         Box box;
-    };
-    std::vector<Cell> cells;
-    struct Node {
-        Box box;
-        int left, count, first;
-    };
-    std::vector<Node> nodes;
-
-    // On a quad `corner` is 0, on another face it names the quadrant.
-    Vector at(int face, int corner, double u, double v) const {
-        double const normalized[2] = {u, v};
-        double uv[2] = {u, v};
-        auto const parameterization = surfaces[face].GetParameterization();
-        if (parameterization.HasSubFaces()) parameterization.ConvertNormalizedSubFaceToCoord(corner, normalized, uv);
-        Vector p{};
-        surfaces[face].Evaluate(uv, points[face].data(), BfrSurface::PointDescriptor(3), &p.x);
-        return p;
-    }
-
-    explicit Oracle(Polygons const& polygons) : refiner(make_refiner(polygons, 0)) {
-        Bfr::SurfaceFactory::Options options;
-        options.SetApproxLevelSmooth(10).SetApproxLevelSharp(10);
-        Bfr::RefinerSurfaceFactory<> const factory(*refiner, options);
-        BfrSurface::PointDescriptor const three(3);
-        surfaces.resize(polygons.sizes.size());
-        points.resize(polygons.sizes.size());
-        for (std::size_t face = 0; face < surfaces.size(); ++face) {
-            if (!factory.InitVertexSurface(static_cast<int>(face), &surfaces[face])) continue;
-            points[face].resize(3 * surfaces[face].GetNumPatchPoints());
-            surfaces[face].PreparePatchPoints(&polygons.positions.data()->x, three, points[face].data(), three);
-            int const patches = polygons.sizes[face] == 4 ? 1 : static_cast<int>(polygons.sizes[face]);
-            for (int k = 0; k < patches * coarse * coarse; ++k) {
-                int const place = k % (coarse * coarse);
-                Cell cell{static_cast<int>(face), k / (coarse * coarse), double(place % coarse) / coarse,
-                          double(place / coarse) / coarse, {}};
-                for (int corner = 0; corner < 4; ++corner) {
-                    cell.box.add(at(cell.face, cell.corner, cell.u + (corner & 1) / double(coarse),
-                                    cell.v + (corner >> 1) / double(coarse)));
-                }
-                // The surface may bulge out of the box of the corners.
-                double const pad = 0.5 * length(cell.box.high - cell.box.low);
-                cell.box.low = cell.box.low - Vector{pad, pad, pad};
-                cell.box.high = cell.box.high + Vector{pad, pad, pad};
-                cells.push_back(cell);
-            }
-        }
-        build(0, static_cast<int>(cells.size()));
-    }
-
-    int build(int first, int last) {
-        int const index = static_cast<int>(nodes.size());
-        nodes.push_back({});
-        Box box;
-        for (int i = first; i < last; ++i) {
-            box.add(cells[i].box.low);
-            box.add(cells[i].box.high);
-        }
-        nodes[index].box = box;
-        if (last - first <= 4) {
-            nodes[index].count = last - first;
-            nodes[index].first = first;
-            return index;
-        }
-        Vector const extent = box.high - box.low;
-        auto const key = [&](Cell const& cell) {
-            if (extent.x >= extent.y && extent.x >= extent.z) return cell.box.low.x + cell.box.high.x;
-            return extent.y >= extent.z ? cell.box.low.y + cell.box.high.y : cell.box.low.z + cell.box.high.z;
+        for (Vector const& p : polygons.positions) box.add(p);
+        Vector const extent = box.high - box.low, middle = (box.low + box.high) / 2;
+        size = length(extent);
+        std::mt19937_64 random(7);
+        std::uniform_real_distribution<double> unit(-0.7, 0.7);
+        auto const anywhere = [&] {
+            double const x = unit(random), y = unit(random), z = unit(random);
+            return middle + Vector{extent.x * x, extent.y * y, extent.z * z};
         };
-        int const middle = (first + last) / 2;
-        std::nth_element(cells.begin() + first, cells.begin() + middle, cells.begin() + last,
-                         [&](Cell const& a, Cell const& b) { return key(a) < key(b); });
-        build(first, middle);
-        nodes[index].left = build(middle, last);
-        nodes[index].count = 0;
-        return index;
+        for (std::size_t i = 0; i < queries_per_shape; ++i) {
+            points.push_back(anywhere());
+            Vector const origin = anywhere();
+            lines.insert(lines.end(), {origin, anywhere() - origin});
+        }
     }
 
-    std::vector<Vector> grid(Cell const& cell) const {
-        std::vector<Vector> result;
-        for (int j = 0; j <= fine; ++j) {
-            for (int i = 0; i <= fine; ++i) {
-                result.push_back(at(cell.face, cell.corner, cell.u + i / double(coarse * fine),
-                                    cell.v + j / double(coarse * fine)));
+    std::string where(char const* what, std::size_t i) const { return name + " " + what + " " + std::to_string(i); }
+
+    Points ask_closest(double radius, std::size_t first, std::size_t count, welt_surface_point const* starts) const {
+        Points feet(count);
+        check::that(welt_surface_closest(surface.get(), &points[first].x, count, radius, starts, nullptr, feet.data(), count,
+                                         nullptr) == WELT_OK, name + ": closest");
+        return feet;
+    }
+
+    // True for a point of OpenSubdiv's surface: Bfr is exact to its last squares, of 2^-10 of a face.
+    bool is_on(welt_surface_point const& found) const {
+        Vector const there = oracle.at(static_cast<int>(found.face), static_cast<int>(found.corner), found.u, found.v);
+        double const off = distance(there, position_of(found)) / size;
+        largest_off = std::max(largest_off, off);
+        return off < 1e-6;
+    }
+
+    Points closest_points() const {
+        Points const feet = ask_closest(INFINITY, 0, points.size(), nullptr);
+        for (std::size_t i = 0; i < points.size(); ++i) {
+            welt_surface_point const& foot = feet[i];
+            std::string const at = where("point", i);
+            ++closest.asked;
+            closest.that(foot.face != WELT_NONE, at + " has no closest point");
+            if (foot.face == WELT_NONE) continue;
+            ++closest.answered;
+            closest.that(is_on(foot), at + ": the closest point is off the surface");
+            double const error = std::abs(distance(position_of(foot), points[i]) - foot.distance);
+            closest.that(error <= 1e-12 * size, at + ": wrong distance");
+            double const other = oracle.closest(points[i], foot.distance * (1 - 1e-12) - 1e-12 * size);
+            double const gap = (foot.distance - other) / size;
+            ++closest.compared;
+            closest.worst = std::max(closest.worst, gap);
+            closest.that(gap <= 1e-8, at + ": a point is closer by " + check::number(gap));
+        }
+        return feet;
+    }
+
+    // Bad guesses, the feet of other points, lead to the same distances; a radius just above them too, one just below to nothing.
+    void starts_and_radii(Points const& feet) const {
+        Points starts(feet.begin() + 1, feet.end());
+        starts.push_back(feet.front());
+        Points const started = ask_closest(INFINITY, 0, points.size(), starts.data());
+        for (std::size_t i = 0; i < points.size(); ++i) {
+            double const expected = feet[i].distance;
+            same(with_start, started[i], i, expected, where("point with a start", i));
+            bool const inside = i % 2 == 0;
+            Points const limited = ask_closest(expected * (inside ? 1 + 1e-9 : 1 - 1e-9), i, 1, nullptr);
+            same(with_radius, limited[0], i, inside ? expected : INFINITY, where("point with a radius", i));
+        }
+    }
+
+    // `expected` is infinite where nothing is to be found.
+    void same(Class& kind, welt_surface_point const& found, std::size_t i, double expected, std::string const& at) const {
+        ++kind.asked;
+        ++kind.compared;
+        bool const answered = found.face != WELT_NONE;
+        kind.that(answered == std::isfinite(expected), at + (answered ? " finds what is too far" : " finds nothing"));
+        if (!answered) return;
+        ++kind.answered;
+        kind.that(is_on(found), at + ": the closest point is off the surface");
+        double const error = std::max(std::abs(found.distance - expected),
+                                      std::abs(distance(position_of(found), points[i]) - expected)) / size;
+        kind.worst = std::max(kind.worst, error);
+        kind.that(error <= 1e-12, at + ": another distance, by " + check::number(error));
+    }
+
+    void hits_of_lines() const {
+        std::size_t const count = points.size();
+        std::vector<std::size_t> starts(count + 1);
+        Points hits(64 * count), firsts(count);
+        std::size_t needed = 0;
+        check::that(welt_surface_all_hits(surface.get(), &lines.data()->x, count, -INFINITY, INFINITY, nullptr, starts.data(),
+                                          &needed, hits.data(), hits.size(), nullptr) == WELT_OK, name + ": hits");
+        check::that(welt_surface_first_hits(surface.get(), &lines.data()->x, count, 0, INFINITY, nullptr, firsts.data(), count,
+                                            nullptr) == WELT_OK, name + ": first hits");
+        for (std::size_t i = 0; i < count; ++i) {
+            hits_of_line(i, hits.data() + starts[i], hits.data() + starts[i + 1]);
+            first_of_ray(i, firsts[i], hits.data() + starts[i], hits.data() + starts[i + 1]);
+        }
+    }
+
+    void hits_of_line(std::size_t i, welt_surface_point const* begin, welt_surface_point const* end) const {
+        Vector const o = lines[2 * i], d = lines[2 * i + 1];
+        std::string const at = where("line", i);
+        ++all_hits.asked;
+        for (auto const* hit = begin; hit != end; ++hit) {
+            ++all_hits.answered;
+            all_hits.that(is_on(*hit), at + ": a hit is off the surface");
+            double const aside = distance(o + d * hit->distance, position_of(*hit)) / size;
+            all_hits.worst = std::max(all_hits.worst, aside);
+            all_hits.that(aside <= 1e-11, at + ": a hit is off the line by " + check::number(aside));
+        }
+        for (auto const& crossing : oracle.crossings(o, d)) {
+            if (std::abs(crossing.cosine) < 0.1) continue;
+            double nearest = INFINITY;
+            for (auto const* hit = begin; hit != end; ++hit) {
+                nearest = std::min(nearest, std::abs(hit->distance - crossing.s) * length(d));
             }
+            ++all_hits.compared;
+            all_hits.that(nearest <= crossing.spacing, at + ": a hit is missed, the nearest is " + check::number(nearest / size) +
+                                                           " away, cosine " + check::number(crossing.cosine));
         }
-        return result;
     }
 
-    // Distance of the closest point of the fine tessellation; `best` is a distance that may be undercut.
-    double closest(Vector const& p, double best, int node = 0) const {
-        Node const& here = nodes[node];
-        if (here.box.distance_to(p) >= best) return best;
-        for (int i = here.first; i < here.first + here.count; ++i) {
-            if (cells[i].box.distance_to(p) >= best) continue;
-            for (Vector const& q : grid(cells[i])) best = std::min(best, distance(p, q));
-        }
-        if (here.count > 0) return best;
-        int a = node + 1, b = here.left;
-        if (nodes[b].box.distance_to(p) < nodes[a].box.distance_to(p)) std::swap(a, b);
-        return closest(p, closest(p, best, a), b);
+    // Of all hits the first with s >= 0.
+    void first_of_ray(std::size_t i, welt_surface_point const& first, welt_surface_point const* begin,
+                      welt_surface_point const* end) const {
+        std::string const at = where("ray", i);
+        auto const* const expected = std::find_if(begin, end, [](auto const& hit) { return hit.distance >= 0; });
+        ++first_hit.asked;
+        ++first_hit.compared;
+        bool const answered = first.face != WELT_NONE;
+        first_hit.that(answered == (expected != end), at + (answered ? " hits what no line does" : " misses what the line hits"));
+        if (!answered || expected == end) return;
+        ++first_hit.answered;
+        double const error = std::abs(first.distance - expected->distance) * length(lines[2 * i + 1]) / size;
+        first_hit.worst = std::max(first_hit.worst, error);
+        first_hit.that(error <= 1e-11, at + ": another first hit, by " + check::number(error));
     }
 
-    struct Crossing {
-        double s, spacing, cosine;
-    };
-    void crossings(Vector const& o, Vector const& d, std::vector<Crossing>& found, int node = 0) const {
-        Node const& here = nodes[node];
-        if (!here.box.meets(o, d)) return;
-        for (int i = here.first; i < here.first + here.count; ++i) {
-            if (!cells[i].box.meets(o, d)) continue;
-            auto const p = grid(cells[i]);
-            for (int k = 0; k < fine * fine; ++k) {
-                int const at = k / fine * (fine + 1) + k % fine;
-                triangle(o, d, p[at], p[at + 1], p[at + fine + 2], found);
-                triangle(o, d, p[at], p[at + fine + 2], p[at + fine + 1], found);
+    // The sign is that of the winding number of the tessellation, counted along a line from the point.
+    bool signed_distances(Points const& feet) const {
+        std::vector<double> distances(points.size());
+        if (welt_surface_signed_distances(surface.get(), &points.data()->x, points.size(), nullptr, distances.data(),
+                                          points.size(), nullptr) != WELT_OK) {
+            return false;
+        }
+        for (std::size_t i = 0; i < points.size(); ++i) {
+            std::string const at = where("signed distance", i);
+            ++signed_distance.asked;
+            ++signed_distance.answered;
+            double const error = std::abs(std::abs(distances[i]) - feet[i].distance) / size;
+            signed_distance.worst = std::max(signed_distance.worst, error);
+            signed_distance.that(error <= 1e-12, at + ": another distance, by " + check::number(error));
+            // Nearer, the point may be between the surface and the tessellation.
+            if (feet[i].distance < 1e-4 * size) continue;
+            int winding = 0;
+            for (auto const& crossing : oracle.crossings(points[i], lines[2 * i + 1])) {
+                if (crossing.s >= 0) winding += crossing.cosine > 0 ? 1 : -1;
             }
+            ++signed_distance.compared;
+            signed_distance.that((winding > 0) == (distances[i] < 0), at + " is " + check::number(distances[i]) +
+                                                                         ", winding number " + std::to_string(winding));
         }
-        if (here.count > 0) return;
-        crossings(o, d, found, node + 1);
-        crossings(o, d, found, here.left);
-    }
-
-    static void triangle(Vector const& o, Vector const& d, Vector const& a, Vector const& b, Vector const& c,
-                         std::vector<Crossing>& found) {
-        Vector const e = b - a, f = c - a, h = cross(d, f), normal = cross(e, f);
-        double const det = dot(e, h);
-        if (det == 0) return;
-        Vector const t = o - a;
-        double const u = dot(t, h) / det;
-        Vector const q = cross(t, e);
-        double const v = dot(d, q) / det;
-        if (u < 0 || v < 0 || u + v > 1) return;
-        double const spacing = std::max({length(e), length(f), distance(b, c)});
-        found.push_back({dot(f, q) / det, spacing, std::abs(dot(normal, d)) / (length(normal) * length(d))});
+        return true;
     }
 };
 
@@ -204,76 +224,14 @@ void compare(std::string const& name, Polygons const& polygons, Mesh const& mesh
     if (name.rfind("osd/", 0) == 0 && !tagged) return;
     if (name.rfind("osd/loop", 0) == 0 || polygons.sizes.size() > 800 || polygons.sizes.size() < 6 || count == shapes / 2) return;
     ++count;
-    Oracle const oracle(polygons);
-    welt::Surface const surface = mesh.freeze();
-    welt_surface* const made = surface.get();
-    Box box;
-    for (Vector const& p : polygons.positions) box.add(p);
-    double const size = length(box.high - box.low);
-    std::mt19937_64 random(7);
-    std::uniform_real_distribution<double> unit(-0.7, 0.7);
-    auto const anywhere = [&] {
-        Vector const e = box.high - box.low;
-        return (box.low + box.high) / 2 + Vector{e.x * unit(random), e.y * unit(random), e.z * unit(random)};
-    };
-    std::vector<Vector> points(queries_per_shape), lines;
-    for (Vector& p : points) {
-        p = anywhere();
-        Vector const origin = anywhere();
-        lines.insert(lines.end(), {origin, anywhere() - origin});
-    }
-    std::vector<welt_surface_point> feet(points.size());
-    check::that(welt_surface_closest(made, &points.data()->x, points.size(), INFINITY, nullptr, nullptr, feet.data(), feet.size(),
-                                     nullptr) == WELT_OK, name + ": closest");
-    for (std::size_t i = 0; i < points.size(); ++i) {
-        welt_surface_point const& foot = feet[i];
-        std::string const where = name + " point " + std::to_string(i);
-        check::that(foot.face != WELT_NONE, where + " has no closest point");
-        if (foot.face == WELT_NONE) continue;
-        Vector const position{foot.position[0], foot.position[1], foot.position[2]};
-        Vector const there = oracle.at(static_cast<int>(foot.face), static_cast<int>(foot.corner), foot.u, foot.v);
-        // Bfr is exact to its last squares, of 2^-10 of a face.
-        double const off = distance(there, position) / size;
-        largest_off = std::max(largest_off, off);
-        check::that(off < 1e-6, where + " is off the surface by " + check::number(off));
-        check::that(std::abs(distance(position, points[i]) - foot.distance) <= 1e-12 * size, where + ": wrong distance");
-        double const other = oracle.closest(points[i], foot.distance * (1 - 1e-12) - 1e-12 * size);
-        double const gap = (foot.distance - other) / size;
-        largest_gap = std::max(largest_gap, gap);
-        check::that(gap <= 1e-8, where + ": a point is closer by " + check::number(gap));
-    }
-    std::vector<std::size_t> starts(points.size() + 1);
-    std::vector<welt_surface_point> hits(64 * points.size());
-    std::size_t needed = 0;
-    check::that(welt_surface_all_hits(made, &lines.data()->x, points.size(), -INFINITY, INFINITY, nullptr, starts.data(), &needed,
-                                      hits.data(), hits.size(), nullptr) == WELT_OK, name + ": hits");
-    for (std::size_t i = 0; i < points.size(); ++i) {
-        std::string const where = name + " line " + std::to_string(i);
-        Vector const o = lines[2 * i], d = lines[2 * i + 1];
-        for (std::size_t k = starts[i]; k < starts[i + 1]; ++k) {
-            welt_surface_point const& hit = hits[k];
-            Vector const position{hit.position[0], hit.position[1], hit.position[2]};
-            Vector const there = oracle.at(static_cast<int>(hit.face), static_cast<int>(hit.corner), hit.u, hit.v);
-            check::that(distance(there, position) <= 1e-6 * size, where + ": a hit is off the surface");
-            check::that(distance(o + d * hit.distance, position) <= 1e-11 * size, where + ": a hit is off the line");
-        }
-        std::vector<Oracle::Crossing> crossings;
-        oracle.crossings(o, d, crossings);
-        for (auto const& crossing : crossings) {
-            if (crossing.cosine < 0.1) continue;
-            double nearest = std::numeric_limits<double>::infinity();
-            for (std::size_t k = starts[i]; k < starts[i + 1]; ++k) {
-                nearest = std::min(nearest, std::abs(hits[k].distance - crossing.s) * length(d));
-            }
-            ++hits_compared;
-            check::that(nearest <= crossing.spacing, where + ": a hit is missed, the nearest is " + check::number(nearest / size) +
-                                                         " away, cosine " + check::number(crossing.cosine));
-        }
-    }
-    points_asked += points.size();
-    lines_asked += points.size();
-    std::printf("%-50s %zu faces, %zu closest points, %zu lines with %zu hits\n", name.c_str(), polygons.sizes.size(),
-                points.size(), points.size(), needed);
+    Shape const shape(name, polygons, mesh);
+    Points const feet = shape.closest_points();
+    shape.starts_and_radii(feet);
+    std::size_t const hits_before = all_hits.answered;
+    shape.hits_of_lines();
+    bool const closed = shape.signed_distances(feet);
+    std::printf("%-50s %4zu faces, %s, %zu queries of each class, %zu hits\n", name.c_str(), polygons.sizes.size(),
+                closed ? "closed" : "open", queries_per_shape, all_hits.answered - hits_before);
     std::fflush(stdout);
 }
 
@@ -283,9 +241,12 @@ int main(int argc, char** argv) {
     if (argc > 1) queries_per_shape = std::strtoul(argv[1], nullptr, 10) / shapes;
     int const code = for_each_cage(compare, true);
     int const tested = tagged_tested + cages_tested;
-    std::printf("%d shapes, %zu closest points: the tessellation is closer by at most %.1e of the size; off OpenSubdiv's surface by "
-                "%.1e; %zu lines, %zu hits of the tessellation, %d failures\n",
-                tested, points_asked, largest_gap, largest_off, lines_asked, hits_compared, check::failures);
+    std::printf("%d shapes; found points are off OpenSubdiv's surface by at most %.1e of the size\n", tested, largest_off);
+    std::printf("%-30s %9s %9s %9s %9s %7s\n", "class", "asked", "found", "compared", "largest", "missed");
+    for (Class const* kind : {&closest, &with_start, &with_radius, &all_hits, &first_hit, &signed_distance}) {
+        std::printf("%-30s %9zu %9zu %9zu %9.1e %7d\n", kind->name, kind->asked, kind->answered, kind->compared, kind->worst,
+                    kind->missed);
+    }
     if (code == 0 && tested < shapes) return 1;
     return code;
 }
