@@ -1,9 +1,7 @@
 //! The tables of docs/junctions.md: `cargo run --example junctions`; with a folder as its argument, the pictures, too.
 
-#[allow(dead_code, reason = "shared with the tests")]
 #[path = "../tests/common/junction_cases.rs"]
 mod junction_cases;
-#[allow(dead_code, reason = "shared with the tests")]
 #[path = "../tests/common/sheet.rs"]
 mod sheet;
 

@@ -114,8 +114,8 @@ impl End {
         for k in 0..SAMPLES {
             let t = far * (k as f64 + 0.5) / SAMPLES as f64;
             let along = if self.at_start { t } else { length - t };
-            let (tangent, own) = patch.at_side(self.side, along)?.from_side(self.side);
-            let (_, their) = other.at_side(self.there, length - along)?.from_side(self.there);
+            let (tangent, own) = patch.at_side(self.side, along)?.beside(self.side);
+            let (_, their) = other.at_side(self.there, length - along)?.beside(self.there);
             let tangent = tangent.try_normalize()?;
             let normal = tangent.cross(own - their).try_normalize()?;
             let [width, width_there] =

@@ -42,7 +42,7 @@ pub struct SplinePoint {
 
 impl SplinePoint {
     /// The derivatives along a side, in its sense, and from it inwards.
-    pub(super) fn from_side(self, side: usize) -> (DVec3, DVec3) {
+    pub(super) fn beside(self, side: usize) -> (DVec3, DVec3) {
         match side % 4 {
             0 => (self.du, self.dv),
             1 => (self.dv, -self.du),
