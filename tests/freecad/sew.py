@@ -1,8 +1,8 @@
 """Sews patches in FreeCAD: `freecadcmd -c "import runpy; runpy.run_path('tests/freecad/sew.py')"` with the JSON files
 that `welt patches` wrote in the environment variable PATCHES, separated by colons.
 
-Prints a line of JSON per file: faces, those in no shell, shells, closed ones and how many there should be, valid (the whole and the solids
-of the closed shells, by OpenCASCADE's BRepCheck), free edges and how many there should be, edges that more than two faces share,
+Prints a line of JSON per file: faces, those in no shell, shells, closed ones and how many there should be, valid (the solids of the
+closed shells, other shells and faces in none, by OpenCASCADE's BRepCheck), free edges and how many there should be, edges that more than two faces share,
 the greatest distance between the poles of shared sides, the greatest tolerance of the sewn shape, volume of the closed shells, seconds for
 making faces and sewing, and for the checks. FreeCAD's exit code says nothing about errors: the last line is "done"."""
 
@@ -70,21 +70,23 @@ def sew(path):
     shape.sewShape()
     sewn = time.time()
     shells = shape.Shells
-    loose = len(shape.Faces) - sum(len(shell.Faces) for shell in shells)
+    in_shells = {face.hashCode() for shell in shells for face in shell.Faces}
+    loose = [face for face in shape.Faces if face.hashCode() not in in_shells]
     uses = {}
     for each in shape.Faces:
         for edge in each.Edges:
             if not edge.Degenerated:
                 uses[edge.hashCode()] = uses.get(edge.hashCode(), 0) + 1
     solids = [Part.Solid(shell) for shell in shells if shell.isClosed()]
+    parts = solids + [shell for shell in shells if not shell.isClosed()] + loose
     return {
         "file": os.path.basename(path),
         "faces": len(shape.Faces),
-        "loose": loose,
+        "loose": len(loose),
         "shells": len(shells),
         "closed": len(solids),
         "closed_components": closed_components(patches),
-        "valid": shape.isValid() and all(solid.isValid() for solid in solids),
+        "valid": all(part.isValid() for part in parts),
         "free_edges": sum(count == 1 for count in uses.values()),
         "borders": sum(beyond is None for patch in patches for beyond in patch["neighbours"]),
         "crowded_edges": sum(count > 2 for count in uses.values()),

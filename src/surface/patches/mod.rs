@@ -162,10 +162,12 @@ impl Patches {
                 let found = ruler.distance(pieces, region, patch, Spans::Last);
                 (worst, angle) = (worst.max(found.relative), angle.max(found.angle));
             }
-            let jump = worst_jump(&patches, &neighbours, smooth);
             let near = worst <= options.tolerance || rings >= *RINGS.end();
-            let upright = (angle <= ANGLE && jump <= JUMP) || rings >= RINGS_FOR_NORMALS;
-            if near && upright {
+            let upright = || {
+                rings >= RINGS_FOR_NORMALS
+                    || (angle <= ANGLE && worst_jump(&patches, &neighbours, smooth) <= JUMP)
+            };
+            if near && upright() {
                 break patches;
             }
             let missing = (worst / options.tolerance).log(PER_RING).floor().clamp(1.0, 4.0);
