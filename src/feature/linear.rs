@@ -81,9 +81,10 @@ impl Run<'_> {
         let sampling = Sampling { per_side: self.options.samples, threads: self.options.threads };
         let deepest = self.deepest();
         let active_rings = self.options.method.active_rings();
-        let reference =
-            measured.then(|| deviation::Reference::freeze(mesh, &crossed, footprint, sampling, active_rings));
-        let walls = measured.then(|| deviation::Walls::around(mesh, &crossed, deepest));
+        let reference = measured
+            .then(|| deviation::Reference::freeze(mesh, &crossed, footprint, sampling, active_rings))
+            .transpose()?;
+        let walls = measured.then(|| deviation::Walls::around(mesh, &crossed, deepest)).transpose()?;
         let mut target = Target::freeze(mesh, &region, job)?;
         self.clock.lap("freeze");
 

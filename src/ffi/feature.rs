@@ -358,7 +358,7 @@ pub unsafe extern "C" fn welt_mesh_displace(
 /// model units: 3 doubles.
 /// job: may be NULL.
 ///
-/// Fails with WELT_ERROR_ARGUMENT and WELT_ERROR_CANCELLED. Since: 0.1.
+/// Fails with WELT_ERROR_ARGUMENT, WELT_ERROR_CANCELLED and WELT_ERROR_MEMORY. Since: 0.1.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn welt_mesh_deviation(
     first: *const WeltMesh,

@@ -1,5 +1,6 @@
 //! A bounding volume tree over boxes: median split, flat array, no recursion.
 
+use crate::memory::{self, OutOfMemory};
 use glam::DVec3;
 
 /// Most boxes in a leaf.
@@ -31,9 +32,10 @@ pub(super) enum Content<'a> {
 
 impl Tree {
     /// The tree over `boxes`, each (low, high).
-    pub(super) fn new(boxes: &[(DVec3, DVec3)]) -> Self {
-        let mut items: Vec<u32> = (0..boxes.len() as u32).collect();
-        let mut nodes: Vec<Node> = Vec::with_capacity(boxes.len());
+    pub(super) fn new(boxes: &[(DVec3, DVec3)]) -> Result<Self, OutOfMemory> {
+        let mut items: Vec<u32> = memory::collected(boxes.len(), 0..boxes.len() as u32)?;
+        // A leaf with one box has a sibling with two, so that there are at most 2 leaves, and 4 nodes, for 3 boxes.
+        let mut nodes: Vec<Node> = memory::room(boxes.len() + boxes.len() / 3 + 1)?;
         // Ranges still to do, each with the inner node whose second child it is.
         let mut open: Vec<(usize, usize, Option<usize>)> = Vec::new();
         if !items.is_empty() {
@@ -73,7 +75,7 @@ impl Tree {
             open.push((start + half, end, Some(index)));
             open.push((start, start + half, None));
         }
-        Self { nodes, items }
+        Ok(Self { nodes, items })
     }
 
     /// The box round everything; `None` for an empty tree.

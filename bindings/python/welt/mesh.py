@@ -144,6 +144,7 @@ class Mesh(Elements):
         parity: str = "auto",
         strict: bool = False,
         deviation: bool = False,
+        limits: Mapping[str, Union[int, float]] = {},
         job: Optional[Job] = None,
     ) -> Dict[str, Any]:
         """Puts features along the marked edges, fits the mesh to the surface as it was, and gives the report.
@@ -156,10 +157,13 @@ class Mesh(Elements):
         parity: "auto", "all_quad" or "local": what is done about faces with an odd number of sides.
         strict: marks that no rule handles are an error; else the report lists them.
         deviation: measure deviations and look for thin walls; costs more than the feature.
+        limits: what each run of the rules may cost, beyond which it is a RuleError: max_script_depth, max_applications,
+            max_steps, max_changes (of the mesh), max_growth (times the elements of the mesh), max_extra_elements (and as many
+            more), max_seconds. Defaults: docs/trust.md.
 
         After an error the mesh is as it was before. Vertices keep their numbers, new ones follow.
         """
-        chosen = options.feature(fit, parity, strict, deviation)
+        chosen = options.feature(fit, parity, strict, deviation, limits)
         text = options.settings(settings)
         what: List[Any]
         if isinstance(features, Rules):
