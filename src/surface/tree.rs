@@ -96,4 +96,26 @@ impl Tree {
             Content::Children([index + 1, node.second])
         }
     }
+
+    /// Something for each node: that of its items (`leaf`) or of its children, joined.
+    pub(super) fn gather<T: Copy>(
+        &self,
+        leaf: impl Fn(u32) -> T,
+        join: impl Fn(T, T) -> T,
+    ) -> Result<Vec<T>, OutOfMemory> {
+        // From the last to the first, for children stand behind their parent.
+        let mut reversed: Vec<T> = memory::room(self.nodes.len())?;
+        let last = self.nodes.len().saturating_sub(1);
+        for index in (0..self.nodes.len()).rev() {
+            let joined = match self.content(index as u32) {
+                Content::Leaf(items) => items.iter().map(|&item| leaf(item)).reduce(&join),
+                Content::Children(children) => {
+                    children.iter().map(|&child| reversed[last - child as usize]).reduce(&join)
+                }
+            };
+            reversed.extend(joined);
+        }
+        reversed.reverse();
+        Ok(reversed)
+    }
 }

@@ -5,11 +5,12 @@
 //! kept inside the part, finds its root if there is one.
 
 use super::Bicubic;
-use super::line::MAX_PARTS;
 use glam::{DMat2, DVec2, DVec3};
 
 /// How often a patch is halved at most: beyond, the line touches the surface.
 const MAX_HALVINGS: u32 = 12;
+/// Parts of pieces looked at with proof; beyond (a line that lies in the surface) they are no longer halved.
+const MAX_PARTS: u32 = 4000;
 
 /// A point on the axis, at (a, b) of the patch.
 pub(super) struct Crossing {
