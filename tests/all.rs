@@ -10,6 +10,7 @@ mod common;
 mod creases;
 mod curvature;
 mod curves;
+mod degenerate_queries;
 mod extremes;
 mod features;
 mod fit_study;
