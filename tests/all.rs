@@ -11,6 +11,7 @@ mod common;
 mod creases;
 mod curvature;
 mod curves;
+mod degenerate_queries;
 mod extremes;
 mod faults;
 mod features;

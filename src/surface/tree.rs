@@ -3,8 +3,8 @@
 use crate::memory::{self, OutOfMemory};
 use glam::DVec3;
 
-/// Most boxes in a leaf.
-const LEAF: usize = 2;
+/// Most boxes in a leaf: the bounds of a node cost less than a look at a piece.
+const LEAF: usize = 1;
 
 /// An inner node's children are `index + 1` and `second`; a leaf (`count > 0`) holds `items[second..second + count]`.
 #[derive(Clone, Copy, Debug)]

@@ -47,7 +47,7 @@ impl Search<'_> {
             }
             let sides = corner.refine(&mut scratch);
             for (side, grid) in sides.iter().enumerate() {
-                self.visit(Bicubic::from_bspline(grid), corner.origin, domain.side(side));
+                self.visit(&Bicubic::from_bspline(grid), corner.origin, domain.side(side));
             }
             domain = domain.inner();
         }

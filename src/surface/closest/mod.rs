@@ -3,6 +3,7 @@
 mod convexity;
 mod corner;
 mod minimise;
+mod part;
 mod search;
 
 use super::{Bicubic, Jet, LimitSurface, Parameter};

@@ -2,26 +2,18 @@
 
 use super::convexity::View;
 use super::minimise::minimise;
+use super::part::{Part, Piece, Square};
 use super::{Bicubic, Facing, LimitSurface};
 use crate::surface::index::{Domain, Item};
 use crate::surface::tree::Content;
 use glam::DVec3;
-use std::cmp::{Ordering, Reverse};
-use std::collections::BinaryHeap;
+use smallvec::SmallVec;
 
 /// How often a piece is halved at most before Newton's method is trusted without proof.
 const MAX_HALVINGS: u32 = 8;
 /// Parts of pieces looked at before halving ends: bounds the time at centres of curvature, where everything is
 /// equally close.
 const MAX_PARTS: u32 = 2000;
-/// A part of a piece: the square from (s, t) of size `size`.
-struct Part {
-    bicubic: Bicubic,
-    s: f64,
-    t: f64,
-    size: f64,
-    halvings: u32,
-}
 
 /// The foot in a piece, at (s, t) of it.
 pub(super) struct Found {
@@ -50,33 +42,6 @@ pub(super) struct Search<'a> {
     stack: Vec<Part>,
 }
 
-/// A distance as a key of the queue.
-#[derive(Clone, Copy, PartialEq)]
-struct Nearness(f64);
-
-impl Eq for Nearness {}
-
-impl Ord for Nearness {
-    fn cmp(&self, other: &Self) -> Ordering {
-        self.0.total_cmp(&other.0)
-    }
-}
-
-impl PartialOrd for Nearness {
-    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
-        Some(self.cmp(other))
-    }
-}
-
-/// What the queue holds: items come before nodes that may be as near.
-#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-enum Goal {
-    /// A piece or, numbered after the pieces, an extraordinary corner.
-    Item(u32),
-    /// A node of the tree.
-    Node(u32),
-}
-
 pub(super) fn box_distance(low: DVec3, high: DVec3, point: DVec3) -> f64 {
     (low - point).max(point - high).max(DVec3::ZERO).length()
 }
@@ -101,7 +66,7 @@ impl<'a> Search<'a> {
             found: None,
             aside: f64::INFINITY,
             parts: 0,
-            stack: Vec::with_capacity(8),
+            stack: Vec::new(),
         }
     }
 
@@ -119,112 +84,110 @@ impl<'a> Search<'a> {
         at_least > bound.min(self.best + self.rounding())
     }
 
-    /// Visits the pieces, those first that may be nearest. The foot and its distance.
+    /// Visits the pieces, of two nodes the nearer first. The foot and its distance.
     pub(super) fn run(mut self) -> Option<(Found, f64)> {
         let surface = self.surface;
         let index = surface.index();
         let (point, tolerance) = (self.point, surface.tolerance);
-        let node_entry = |number: u32| {
-            let node = index.tree.node(number);
-            let apart = box_distance(node.low, node.high, point);
-            Reverse((Nearness(apart.max(index.at_least(number, point, tolerance))), Goal::Node(number)))
-        };
-        let mut open = BinaryHeap::with_capacity(64);
+        let mut open: SmallVec<[(f64, u32); 64]> = SmallVec::new();
         if index.tree.bounds().is_some() {
-            open.push(node_entry(0));
+            open.push((0.0, 0));
         }
-        while let Some(Reverse((Nearness(at_least), goal))) = open.pop() {
+        while let Some((at_least, number)) = open.pop() {
             if self.hopeless(at_least) {
-                break;
+                continue;
             }
-            match goal {
-                Goal::Node(number) => match index.tree.content(number) {
-                    Content::Children(children) => {
-                        open.extend(children.map(node_entry));
+            match index.tree.content(number) {
+                Content::Children(children) => {
+                    let mut nodes = children.map(|child| {
+                        let node = index.tree.node(child);
+                        let apart = box_distance(node.low, node.high, point);
+                        if self.hopeless(apart) {
+                            return (apart, child);
+                        }
+                        (apart.max(index.at_least(child, point, tolerance)), child)
+                    });
+                    if nodes[0].0 < nodes[1].0 {
+                        nodes.swap(0, 1);
                     }
-                    Content::Leaf(items) => {
-                        open.extend(items.iter().map(|&item| {
-                            let nearness = match index.item(surface, item) {
-                                Item::Piece(bicubic, _) => View::new(bicubic, self.point).at_least,
-                                Item::Rest(_) => at_least,
-                            };
-                            Reverse((Nearness(nearness), Goal::Item(item)))
-                        }));
+                    open.extend(nodes);
+                }
+                Content::Leaf(items) => {
+                    for &item in items {
+                        match index.item(surface, item) {
+                            Item::Piece(bicubic, domain) => self.visit(bicubic, DVec3::ZERO, *domain),
+                            Item::Rest(rest) => self.visit_rest(rest),
+                        }
                     }
-                },
-                Goal::Item(item) => match index.item(surface, item) {
-                    Item::Piece(bicubic, domain) => self.visit(*bicubic, DVec3::ZERO, *domain),
-                    Item::Rest(rest) => self.visit_rest(rest),
-                },
+                }
             }
         }
         Some((self.found?, self.best))
     }
 
     /// Looks at a patch whose points are relative to `origin`.
-    pub(super) fn visit(&mut self, bicubic: Bicubic, origin: DVec3, domain: Domain) {
-        let point = self.point - origin;
-        // Minima on the border of a part do not count then, but those on the border of the surface do.
-        let feet_only = self.facing.is_some() && self.surface.places[domain.patch as usize].rims == 0;
-        let facing = self.facing.filter(|f| f.min_cosine >= 0.0).map_or(DVec3::ZERO, |f| f.normal);
+    pub(super) fn visit(&mut self, bicubic: &Bicubic, origin: DVec3, domain: Domain) {
+        let piece = Piece {
+            point: self.point - origin,
+            origin,
+            domain,
+            // Minima on the border of a part do not count then, but those on the border of the surface do.
+            feet_only: self.facing.is_some() && self.surface.places[domain.patch as usize].rims == 0,
+            facing: self.facing.filter(|f| f.min_cosine >= 0.0).map_or(DVec3::ZERO, |f| f.normal),
+        };
         self.stack.clear();
-        self.stack.push(Part { bicubic, s: 0.0, t: 0.0, size: 1.0, halvings: 0 });
+        if self.look(&piece, bicubic, Square::WHOLE) {
+            self.split(&piece, bicubic, Square::WHOLE);
+        }
         while let Some(part) = self.stack.pop() {
             let (low, high) = part.bicubic.bounds();
-            if self.hopeless(box_distance(low, high, point)) {
-                continue;
-            }
-            let view = View::new(&part.bicubic, point);
-            if self.hopeless(view.at_least) {
-                continue;
-            }
-            let convexity = view.convexity(facing);
-            if !convexity.may_face || feet_only && !convexity.may_have_foot {
-                continue;
-            }
-            self.parts += 1;
-            let last = convexity.convex || part.halvings >= MAX_HALVINGS || self.parts > MAX_PARTS;
-            // Newton's method from the middle of a whole piece mostly finds the foot at once; the search that
-            // follows then only has to show that nothing is closer.
-            if last || part.halvings == 0 {
-                let (a, b, jet) = minimise(&part.bicubic, point);
-                let (s, t) = (part.s + part.size * a, part.t + part.size * b);
-                let normal = jet.du.cross(jet.dv);
-                self.offer(
-                    jet.position - point,
-                    Found { domain, s, t, position: jet.position + origin, normal },
-                );
-            }
-            if !last && !self.hopeless(view.at_least) {
-                self.split(&part, point);
+            if !self.hopeless(box_distance(low, high, piece.point))
+                && self.look(&piece, &part.bicubic, part.square)
+            {
+                self.split(&piece, &part.bicubic, part.square);
             }
         }
     }
 
-    /// Puts the quarters of `part` on the stack, the nearest on top.
-    fn split(&mut self, part: &Part, point: DVec3) {
-        let quarters = part.bicubic.quarters();
+    /// Looks at a part of a piece: true when it must be halved.
+    fn look(&mut self, piece: &Piece, bicubic: &Bicubic, square: Square) -> bool {
+        let view = View::new(bicubic, piece.point);
+        if self.hopeless(view.at_least) {
+            return false;
+        }
+        let convexity = view.convexity(piece.facing);
+        if !convexity.may_face || piece.feet_only && !convexity.may_have_foot {
+            return false;
+        }
+        self.parts += 1;
+        let last = convexity.convex || square.halvings >= MAX_HALVINGS || self.parts > MAX_PARTS;
+        // Newton's method from the middle of a whole piece mostly finds the foot at once; the search that
+        // follows then only has to show that nothing is closer.
+        if last || square.halvings == 0 {
+            let (a, b, jet) = minimise(bicubic, piece.point);
+            let (s, t) = (square.s + square.size * a, square.t + square.size * b);
+            let (position, normal) = (jet.position + piece.origin, jet.du.cross(jet.dv));
+            self.offer(jet.position - piece.point, Found { domain: piece.domain, s, t, position, normal });
+        }
+        !last && !self.hopeless(view.at_least)
+    }
+
+    /// Puts the quarters of a part on the stack, the nearest on top.
+    fn split(&mut self, piece: &Piece, bicubic: &Bicubic, square: Square) {
+        let point = piece.point;
+        let quarters = bicubic.quarters();
         // The corner that all quarters share is a point of the surface.
         let middle = quarters[0].points[3][3].distance(point);
         if self.facing.is_none() {
             self.bound = self.bound.min(middle);
         }
-        let size = 0.5 * part.size;
         let distances = quarters.map(|quarter| {
             let points = &quarter.points;
             (points[1][1] + points[2][2]).distance_squared(2.0 * point)
         });
         let mut order = [0, 1, 2, 3];
         order.sort_unstable_by(|&a: &usize, &b| distances[b].total_cmp(&distances[a]));
-        for i in order {
-            self.stack.push(Part {
-                bicubic: quarters[i],
-                s: part.s + if i % 2 == 1 { size } else { 0.0 },
-                t: part.t + if i >= 2 { size } else { 0.0 },
-                size,
-                halvings: part.halvings + 1,
-            });
-        }
+        self.stack.extend(order.map(|i| Part { bicubic: quarters[i], square: square.quarter(i) }));
     }
 
     /// Takes the minimum over a part of a piece if it is the best so far and allowed; `way` leads to it.

@@ -51,7 +51,8 @@ pub(super) fn crossings(bicubic: &Bicubic, tolerance: f64, parts: &mut u32, out:
             Verdict::AtMostOne => true,
             Verdict::Unknown => false,
         };
-        if certain || part.halvings >= MAX_HALVINGS || *parts > MAX_PARTS {
+        let last = part.halvings >= MAX_HALVINGS || *parts > MAX_PARTS;
+        if certain || last || lies_in_its_plane(&part.bicubic, tolerance) {
             let (s, t, jet) = approach(&part.bicubic);
             if jet.position.truncate().length() <= tolerance {
                 out.push(Crossing {
@@ -74,6 +75,15 @@ pub(super) fn crossings(bicubic: &Bicubic, tolerance: f64, parts: &mut u32, out:
             });
         }
     }
+}
+
+/// True where the patch is flat and the axis lies in its plane: they share a line or nothing, of which one point is wanted.
+fn lies_in_its_plane(bicubic: &Bicubic, tolerance: f64) -> bool {
+    let points = || bicubic.points.as_flattened().iter().map(|p| p.truncate());
+    let farthest =
+        points().fold(DVec2::ZERO, |most, p| if p.length_squared() > most.length_squared() { p } else { most });
+    let way = farthest.normalize_or_zero();
+    points().all(|p| p.perp_dot(way).abs() <= tolerance)
 }
 
 fn verdict(bicubic: &Bicubic, tolerance: f64) -> Verdict {
