@@ -9,7 +9,8 @@ fn folder(test: &str) -> Folder {
     let write = |name: &str, content: &str| fs::write(folder.0.join(name), content).unwrap();
     write("b.obj", SHEET);
     write("torn.obj", "v 0 0 0\nf 1 2 9\n");
-    write("small.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n");
+    // Without an edge 1,2.
+    write("small.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\nf 1 2 4 3\n");
     write("notes.txt", "no mesh");
     folder
 }
@@ -74,7 +75,8 @@ fn batches_that_would_lose_something_are_refused() {
     fs::create_dir(folder.0.join("other")).unwrap();
     fs::write(folder.0.join("other/b.obj"), SHEET).unwrap();
     let before = folder.files();
-    let refused = |inputs: &[&str], more: &[&str], words: &[&str]| apply(&folder, inputs, more).fails(2, words);
+    let refused =
+        |inputs: &[&str], more: &[&str], words: &[&str]| apply(&folder, inputs, more).fails(2, words);
     refused(&["sheet.obj", "b.obj"], &["-o", "."], &["sheet.obj would take the place of an input"]);
     refused(&["b.obj", "other/b.obj"], &["-o", "out"], &["out/b.obj would be written for two models"]);
     refused(&["b.obj", "b.obj"], &["-o", "out"], &["out/b.obj would be written for two models"]);
