@@ -9,7 +9,8 @@ fn folder(test: &str) -> Folder {
     let write = |name: &str, content: &str| fs::write(folder.0.join(name), content).unwrap();
     write("b.obj", SHEET);
     write("torn.obj", "v 0 0 0\nf 1 2 9\n");
-    write("small.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n");
+    // Without an edge 1,2.
+    write("small.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\nf 1 2 4 3\n");
     write("notes.txt", "no mesh");
     folder
 }

@@ -19,11 +19,11 @@ use welt::optimise::Method;
 use welt::surface::SAMPLES;
 
 pub fn run(arguments: &Apply) -> Result<ExitCode, Failure> {
-    let work = Work::new(arguments)?;
-    let [input] = &arguments.inputs[..] else { return batch::run(arguments, &work) };
+    let [input] = &arguments.inputs[..] else { return batch::run(arguments) };
     if batch::is_folder(&arguments.output) {
-        return batch::run(arguments, &work);
+        return batch::run(arguments);
     }
+    let work = Work::new(arguments)?;
     let files = Files {
         input: input.clone(),
         output: arguments.output.clone(),
@@ -60,7 +60,7 @@ pub struct Work<'a> {
 }
 
 impl<'a> Work<'a> {
-    fn new(arguments: &'a Apply) -> Result<Self, Failure> {
+    pub fn new(arguments: &'a Apply) -> Result<Self, Failure> {
         Ok(Self {
             arguments,
             request: request(arguments)?,

@@ -18,8 +18,9 @@ pub fn is_folder(path: &Path) -> bool {
 }
 
 /// Does the work to every model; exit code 1 when one fails.
-pub fn run(arguments: &Apply, work: &Work) -> Result<ExitCode, Failure> {
+pub fn run(arguments: &Apply) -> Result<ExitCode, Failure> {
     let models = models(arguments)?;
+    let work = Work::new(arguments)?;
     let folders = [Some(&arguments.output), arguments.report.as_ref(), arguments.figure.as_ref()];
     for folder in folders.into_iter().chain([arguments.trace.as_ref()]).flatten() {
         make_folder(folder)?;

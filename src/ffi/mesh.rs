@@ -122,7 +122,7 @@ pub unsafe extern "C" fn welt_mesh_free(mesh: *mut WeltMesh) {
 /// mesh: must not be NULL.
 /// copy: receives the handle; free it with welt_mesh_free.
 ///
-/// Selections that were made on the mesh serve the copy too. Since: 0.1.
+/// Selections that were made on the mesh serve the copy too. Fails with WELT_ERROR_MEMORY. Since: 0.1.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn welt_mesh_copy(
     mesh: *const WeltMesh,
