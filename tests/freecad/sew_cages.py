@@ -15,8 +15,6 @@ import sys
 import tempfile
 
 HERE = os.path.dirname(os.path.abspath(__file__))
-# Faces of the finer refinement, roughly.
-FINE = 150_000
 # What the extrapolation is good for, relative.
 VOLUME = 1e-4
 HEAD = (
@@ -68,9 +66,9 @@ def volume(path):
     return sum(abs(six) / 6 for component, six in found.items() if component not in opened)
 
 
-def expected_volume(welt, cage, faces, folder):
+def expected_volume(welt, cage, faces, folder, fine):
     level = 2
-    while faces * 4 ** (level + 1) < FINE and level < 6:
+    while faces * 4 ** (level + 1) < fine and level < 6:
         level += 1
     found = []
     for each in (level - 1, level):
@@ -121,7 +119,7 @@ def sew(path, home, seconds):
     return json.loads(lines[0]) if lines else None
 
 
-def cells(welt, cage, folder, seconds):
+def cells(welt, cage, folder, seconds, fine):
     """The cells of a row but the first one, and whether all is as it should be."""
     asked = subprocess.run([welt, "check", "--json", cage], capture_output=True, text=True)
     try:
@@ -160,7 +158,7 @@ def cells(welt, cage, folder, seconds):
     good = found["valid"] and found["gap"] == 0 and found["closed"] == found["closed_components"]
     # Borders of components that touch are sewn together.
     good = good and found["free_edges"] <= found["borders"] and not (found["crowded_edges"] or found["loose"] and clean == "yes")
-    wanted = expected_volume(welt, cage, report["faces"], folder)
+    wanted = expected_volume(welt, cage, report["faces"], folder, fine)
     error = abs(found["volume"] - wanted) / wanted if wanted else abs(found["volume"])
     good = good and error < VOLUME
     row += [f"{error:.0e}", f"{found['sewing_seconds']:.1f} + {found['checking_seconds']:.1f}"]
@@ -171,6 +169,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--welt", default=os.path.join(HERE, "../../target/release/welt"))
     parser.add_argument("--seconds", type=float, default=600)
+    parser.add_argument("--fine", type=int, default=150_000, help="faces of the finer refinement, roughly")
     parser.add_argument("cages", nargs="+")
     options = parser.parse_args()
     print("|" + HEAD + "|\n" + "|---" * (HEAD.count("|") + 1) + "|", flush=True)
@@ -178,7 +177,7 @@ def main():
     for cage in options.cages:
         with tempfile.TemporaryDirectory() as folder:
             try:
-                row, good = cells(options.welt, cage, folder, options.seconds)
+                row, good = cells(options.welt, cage, folder, options.seconds, options.fine)
             except (subprocess.SubprocessError, OSError) as error:
                 row, good = [f"failed: {error}"[:200]], False
         failed += not good
