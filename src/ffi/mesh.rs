@@ -134,7 +134,7 @@ pub unsafe extern "C" fn welt_mesh_copy(
         let output = unsafe { Output::new(copy, "copy") }?;
         // SAFETY: the header asks for a living mesh.
         let mesh = unsafe { mesh_of(mesh) }?;
-        output.handle(WeltMesh::new(mesh.clone()));
+        output.handle(WeltMesh::new(mesh.try_clone()?));
         Ok(())
     };
     // SAFETY: the header asks for NULL or a place for an error.

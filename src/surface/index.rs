@@ -4,6 +4,7 @@ use super::disc::Disc;
 use super::places::Entry;
 use super::tree::Tree;
 use super::{Bicubic, LimitSurface};
+use crate::memory::{self, OutOfMemory};
 use crate::subdivision::patch_corner::{Corner, Points};
 use glam::DVec3;
 use smallvec::SmallVec;
@@ -101,11 +102,20 @@ impl Rest {
 }
 
 impl Index {
-    pub(super) fn new(surface: &LimitSurface) -> Self {
-        let mut index = Self { domains: vec![Domain::whole(0); surface.bicubics.len()], ..Self::default() };
-        let mut boxes: Vec<(DVec3, DVec3)> = surface.bicubics.iter().map(Bicubic::bounds).collect();
-        let mut rest_boxes = Vec::with_capacity(surface.corners.entries.len());
-        let mut rest_discs = Vec::with_capacity(surface.corners.entries.len());
+    pub(super) fn new(surface: &LimitSurface) -> Result<Self, OutOfMemory> {
+        let (held, rests) = (surface.bicubics.len(), surface.corners.entries.len());
+        let pieces = 3 * LEVELS as usize * rests;
+        let mut index = Self {
+            domains: memory::room(held + pieces)?,
+            pieces: memory::room(pieces)?,
+            rests: memory::room(rests)?,
+            ..Self::default()
+        };
+        index.domains.resize(held, Domain::whole(0));
+        let mut boxes = memory::room(held + pieces + rests)?;
+        boxes.extend(surface.bicubics.iter().map(Bicubic::bounds));
+        let mut rest_boxes: Vec<(DVec3, DVec3)> = memory::room(rests)?;
+        let mut rest_discs: Vec<Disc> = memory::room(rests)?;
         let mut scratch = Points::new();
         let mut open: Vec<(Entry, Domain)> = Vec::new();
         for (&entry, patch) in surface.patches.iter().zip(0..) {
@@ -142,7 +152,7 @@ impl Index {
             }
         }
         boxes.append(&mut rest_boxes);
-        index.tree = Tree::new(&boxes);
+        index.tree = Tree::new(&boxes)?;
         let disc = |item: u32| match index.item(surface, item) {
             Item::Piece(bicubic, _) => {
                 let p = &bicubic.points;
@@ -151,8 +161,8 @@ impl Index {
             }
             Item::Rest(_) => rest_discs[item as usize - index.domains.len()],
         };
-        index.discs = index.tree.gather(disc, |a, b| a.join(&b));
-        index
+        index.discs = index.tree.gather(disc, |a, b| a.join(&b))?;
+        Ok(index)
     }
 
     /// No point of what the node holds is closer to `point`.

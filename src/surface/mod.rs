@@ -69,13 +69,13 @@ pub struct LimitSurface {
     tolerance: f64,
 }
 
-/// Why a surface was not frozen.
+/// Why a surface was not frozen, or not measured.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, thiserror::Error)]
 pub enum FreezeError {
     /// The caller cancelled.
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
-    /// There is no memory for the surface.
+    /// There is no memory for the surface, or for what was measured.
     #[error(transparent)]
     Memory(#[from] OutOfMemory),
 }
@@ -180,6 +180,25 @@ impl LimitSurface {
 
     /// What queries search.
     fn index(&self) -> &Index {
-        self.index.get_or_init(|| Index::new(self))
+        self.index.get_or_init(|| Index::new(self).unwrap_or_else(|error| memory::give_up(error)))
+    }
+
+    /// Makes what queries search, which the first of them does otherwise: there, no memory ends the program.
+    ///
+    /// # Errors
+    /// [`OutOfMemory`]; the surface is as it was.
+    pub fn prepare(&self) -> Result<(), OutOfMemory> {
+        if self.index.get().is_none() {
+            // Another thread may have been first; what it made is the same.
+            let _ = self.index.set(Index::new(self)?);
+        }
+        Ok(())
+    }
+
+    /// [`around`](Self::around), ready for queries.
+    pub(crate) fn prepared(mesh: &Mesh, faces: &[FaceId]) -> Result<Self, OutOfMemory> {
+        let surface = freeze::freeze(mesh, &existing(mesh, faces)?, unwatched)?;
+        surface.prepare()?;
+        Ok(surface)
     }
 }

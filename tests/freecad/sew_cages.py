@@ -8,6 +8,7 @@ divergence theorem, extrapolated from two levels."""
 
 import argparse
 import json
+import math
 import os
 import subprocess
 import sys
@@ -18,7 +19,10 @@ HERE = os.path.dirname(os.path.abspath(__file__))
 FINE = 150_000
 # What the extrapolation is good for, relative.
 VOLUME = 1e-4
-HEAD = "cage|clean|faces|extraordinary|patches|rings|deviation|rms|normals, degrees|closed shells|borders left open|valid|tolerance|volume error|seconds|result"
+HEAD = (
+    "cage|clean|faces|extraordinary|patches|faces per patch|rings|deviation|rms|normals at vertices|along sides|"
+    "closed shells|borders left open|valid|volume error|seconds|result"
+)
 
 
 def read(path):
@@ -76,6 +80,38 @@ def expected_volume(welt, cage, faces, folder):
     return found[1] + (found[1] - found[0]) / 3
 
 
+def corners(patch):
+    """Per corner its pole, the next one along the side that begins there, and the one before along the side that ends there."""
+    m, n = patch["pole_counts"]
+    poles = patch["poles"]
+    places = [(0, 1, m), (m - 1, 2 * m - 1, m - 2), (m * n - 1, m * n - 2, m * n - m - 1), (m * (n - 1), m * (n - 2), m * (n - 1) + 1)]
+    return [tuple(poles[place] for place in corner) for corner in places]
+
+
+def normal(corner):
+    origin, (ax, ay, az), (bx, by, bz) = [[x - o for x, o in zip(pole, corner[0])] for pole in corner]
+    found = [ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx]
+    length = math.hypot(*found)
+    return [x / length for x in found] if length else None
+
+
+def vertices(patches):
+    """Number of extraordinary vertices, and the greatest angle in degrees between the normals of two neighbours at one."""
+    around = [corners(patch) for patch in patches]
+    found, worst = set(), 0.0
+    for patch, own in zip(patches, around):
+        for corner in range(4):
+            if not patch["irregular"][corner]:
+                continue
+            found.add(tuple(own[corner][0]))
+            beyond = patch["neighbours"][corner]
+            here = normal(own[corner])
+            there = beyond and normal(around[beyond[0]][(beyond[1] + 1) % 4])
+            if here and there:
+                worst = max(worst, math.degrees(2 * math.asin(min(1.0, math.dist(here, there) / 2))))
+    return len(found), worst
+
+
 def sew(path, home, seconds):
     script = f"import runpy; runpy.run_path({os.path.join(HERE, 'sew.py')!r})"
     environment = dict(os.environ, HOME=home, PATCHES=path)
@@ -106,14 +142,12 @@ def cells(welt, cage, folder, seconds):
     with open(path) as file:
         content = json.load(file)
     report, patches = content["report"], content["patches"]
-    corners = set()
-    for patch in patches:
-        m, n = patch["pole_counts"]
-        for corner, place in enumerate([0, m - 1, m * n - 1, m * (n - 1)]):
-            if patch["irregular"][corner]:
-                corners.add(tuple(patch["poles"][place]))
-    row = [clean, report["faces"], len(corners), report["patches"], report["rings"]]
-    row += [f"{report['max_relative_deviation']:.1e}", f"{report['rms_relative_deviation']:.1e}", f"{report['max_normal_jump']:.2f}"]
+    irregular, at_vertices = vertices(patches)
+    sizes = sorted(len(patch["faces"]) for patch in patches)
+    row = [clean, report["faces"], irregular, report["patches"], f"{sizes[0]} / {sizes[len(sizes) // 2]} / {sizes[-1]}", report["rings"]]
+    row += [f"{report['max_relative_deviation']:.1e}", f"{report['rms_relative_deviation']:.1e}"]
+    # On creases patches have normals of their own.
+    row += ["-" if check["creases"] else f"{at_vertices:.0e}", f"{report['max_normal_jump']:.2f}"]
     try:
         found = sew(path, folder, seconds)
     except subprocess.TimeoutExpired:
@@ -122,7 +156,7 @@ def cells(welt, cage, folder, seconds):
         return row + ["FreeCAD failed"], False
     row.append(f"{found['closed']} / {found['closed_components']}")
     row.append(f"{found['free_edges']} / {found['borders']}")
-    row += ["yes" if found["valid"] else "no", f"{found['tolerance']:.0e}"]
+    row.append("yes" if found["valid"] else "no")
     good = found["valid"] and found["gap"] == 0 and found["closed"] == found["closed_components"]
     # Borders of components that touch are sewn together.
     good = good and found["free_edges"] <= found["borders"] and not (found["crowded_edges"] or found["loose"] and clean == "yes")
