@@ -1,6 +1,6 @@
 //! Features: the whole job in one call, and its stages one by one.
 
-use super::arguments::{self, Buffer, Output};
+use super::arguments::{self, Output};
 use super::boundary::boundary;
 use super::error::WeltError;
 use super::failure::{Failure, Place};
