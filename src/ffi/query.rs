@@ -180,7 +180,9 @@ pub unsafe extern "C" fn welt_surface_closest(
     unsafe { boundary(error, body) }
 }
 
-/// Measures the distance of each of many points to a closed surface, negative inside.
+/// Measures the distance of each of many points to a closed surface, negative inside: where the winding number of the
+/// surface is positive. Parts that overlap count as one solid; what lies in a hollow, whose normals point inwards, is outside.
+/// The distance is that of the nearest point of the surface, also where this lies inside another part.
 ///
 /// surface: must not be NULL.
 /// points: x, y and z of each point.

@@ -115,7 +115,7 @@ impl Index {
         let mut boxes = memory::room(held + pieces + rests)?;
         boxes.extend(surface.bicubics.iter().map(Bicubic::bounds));
         let mut rest_boxes: Vec<(DVec3, DVec3)> = memory::room(rests)?;
-        let mut rest_discs = memory::room(rests)?;
+        let mut rest_discs: Vec<Disc> = memory::room(rests)?;
         let mut scratch = Points::new();
         let mut open: Vec<(Entry, Domain)> = Vec::new();
         for (&entry, patch) in surface.patches.iter().zip(0..) {

@@ -34,8 +34,7 @@ impl Tree {
     /// The tree over `boxes`, each (low, high).
     pub(super) fn new(boxes: &[(DVec3, DVec3)]) -> Result<Self, OutOfMemory> {
         let mut items: Vec<u32> = memory::collected(boxes.len(), 0..boxes.len() as u32)?;
-        // A leaf with one box has a sibling with two, so that there are at most 2 leaves, and 4 nodes, for 3 boxes.
-        let mut nodes: Vec<Node> = memory::room(boxes.len() + boxes.len() / 3 + 1)?;
+        let mut nodes: Vec<Node> = memory::room(2 * boxes.len())?;
         // Ranges still to do, each with the inner node whose second child it is.
         let mut open: Vec<(usize, usize, Option<usize>)> = Vec::new();
         if !items.is_empty() {
@@ -98,11 +97,10 @@ impl Tree {
     }
 
     /// Something for each node: that of its items (`leaf`) or of its children, joined.
-    pub(super) fn gather<T: Copy>(
-        &self,
-        leaf: impl Fn(u32) -> T,
-        join: impl Fn(T, T) -> T,
-    ) -> Result<Vec<T>, OutOfMemory> {
+    ///
+    /// # Errors
+    /// [`OutOfMemory`].
+    pub(super) fn gather<T: Copy>(&self, leaf: impl Fn(u32) -> T, join: impl Fn(T, T) -> T) -> Result<Vec<T>, OutOfMemory> {
         // From the last to the first, for children stand behind their parent.
         let mut reversed: Vec<T> = memory::room(self.nodes.len())?;
         let last = self.nodes.len().saturating_sub(1);

@@ -203,6 +203,9 @@ class Features(unittest.TestCase):
             height = hit["position"][2] if arrays.numpy else hit.position[2]
             self.assertAlmostEqual(float(height), -0.05, 3)
         self.assertAlmostEqual(mesh.deviation(sheet(8)).largest, 0.1, 2)
+        compared = mesh.compare(sheet(8), 4, threads=2)
+        self.assertEqual(compared.deviation, mesh.deviation(sheet(8), 4))
+        self.assertTrue(5 < compared.degrees < 90)
 
     def test_wrong_wishes_change_nothing(self):
         mesh = sheet(4)

@@ -28,6 +28,17 @@ class Deviation(NamedTuple):
     percentile_95: float
 
 
+class Comparison(NamedTuple):
+    """How far two limit surfaces are apart, and how their normals and curvatures differ."""
+
+    deviation: Deviation
+    #: The largest angle between the normals of a point and of its closest point.
+    degrees: float
+    #: Differences of the mean curvatures there, per model unit.
+    curvature_root_mean_square: float
+    curvature_largest: float
+
+
 class Mesh(Elements):
     """A control mesh; its vertices, edges and faces are numbered from 0 without gaps.
 
@@ -92,6 +103,13 @@ class Mesh(Elements):
         count = options.whole(samples, "samples")
         run(job, lambda watched: call("welt_mesh_deviation", self, other, count, values, watched))
         return Deviation(*values)
+
+    def compare(self, other: Mesh, samples: int = 8, *, threads: int = 1, job: Optional[Job] = None) -> Comparison:
+        """As `deviation`, with the change of normals and of mean curvature."""
+        values = (ctypes.c_double * 6)()
+        count, parts = options.whole(samples, "samples"), options.whole(threads, "threads")
+        run(job, lambda watched: call("welt_mesh_compare", self, other, count, parts, values, watched))
+        return Comparison(Deviation(*values[:3]), *values[3:])
 
     # --- Loop subdivision, of triangles
 
