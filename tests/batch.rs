@@ -74,7 +74,8 @@ fn batches_that_would_lose_something_are_refused() {
     fs::create_dir(folder.0.join("other")).unwrap();
     fs::write(folder.0.join("other/b.obj"), SHEET).unwrap();
     let before = folder.files();
-    let refused = |inputs: &[&str], more: &[&str], words: &[&str]| apply(&folder, inputs, more).fails(2, words);
+    let refused =
+        |inputs: &[&str], more: &[&str], words: &[&str]| apply(&folder, inputs, more).fails(2, words);
     refused(&["sheet.obj", "b.obj"], &["-o", "."], &["sheet.obj would take the place of an input"]);
     refused(&["b.obj", "other/b.obj"], &["-o", "out"], &["out/b.obj would be written for two models"]);
     refused(&["b.obj", "b.obj"], &["-o", "out"], &["out/b.obj would be written for two models"]);

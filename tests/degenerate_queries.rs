@@ -107,7 +107,11 @@ fn a_tangent_line_gives_its_point_of_contact() {
 #[test]
 fn a_line_in_a_flat_surface_gives_points_of_it_at_most_one_per_patch() {
     let sheet = flat_sheet();
-    let lines = [([-5.0, 2.0, 0.0], [1.0, 0.0, 0.0]), ([-5.0, 1.3, 0.0], [1.0, 0.2, 0.0]), ([-5.0, 0.0, 0.0], [2.0, 0.0, 0.0])];
+    let lines = [
+        ([-5.0, 2.0, 0.0], [1.0, 0.0, 0.0]),
+        ([-5.0, 1.3, 0.0], [1.0, 0.2, 0.0]),
+        ([-5.0, 0.0, 0.0], [2.0, 0.0, 0.0]),
+    ];
     for (origin, direction) in lines {
         let found = hits(&sheet, origin, direction);
         assert!((1..=12).contains(&found.len()), "{} hits", found.len());
@@ -129,7 +133,9 @@ fn lines_at_creases_and_corners() {
     let edge = hits(&cube, [-5.0, 1.0, 1.0], [1.0, 0.0, 0.0]);
     assert!((1..=2).contains(&edge.len()), "{} hits along an edge", edge.len());
     for hit in &edge {
-        assert!(hit.position.distance(DVec3::new(hit.s - 5.0, 1.0, 1.0)) < 1e-14 && (4.0..=6.0).contains(&hit.s));
+        assert!(
+            hit.position.distance(DVec3::new(hit.s - 5.0, 1.0, 1.0)) < 1e-14 && (4.0..=6.0).contains(&hit.s)
+        );
     }
     let side = hits(&cube, [-5.0, 0.3, 1.0], [1.0, 0.1, 0.0]);
     assert!(!side.is_empty());
@@ -173,7 +179,10 @@ fn senseless_lines_hit_nothing() {
     ] {
         assert!(hits(&cube, origin, direction).is_empty(), "{origin:?} {direction:?}");
         let (o, d) = (origin.into(), direction.into());
-        assert!(cube.first_line_hit(o, d, 0.0, inf).is_none() && cube.nearest_line_hit(o, d, 9.0, DVec3::Z).is_none());
+        assert!(
+            cube.first_line_hit(o, d, 0.0, inf).is_none()
+                && cube.nearest_line_hit(o, d, 9.0, DVec3::Z).is_none()
+        );
     }
     for direction in [[0.0, 0.0, 1e-140], [0.0, 0.0, 1e140]] {
         assert_eq!(hits(&cube, [0.0; 3], direction).len(), 2);
@@ -252,7 +261,10 @@ fn signed_distances_of_sharp_overlapping_and_hollow_solids() {
         let point = DVec3::new(at(12.9), at(78.2), at(37.7)) * 2.5;
         let (to_a, to_b) = (cube_distance(point, a, 1.0), cube_distance(point, b, 1.0));
         let close = |found: Option<f64>, expected: f64| {
-            assert!(found.is_some_and(|found| (found - expected).abs() < 1e-12), "{point}: {found:?} {expected}");
+            assert!(
+                found.is_some_and(|found| (found - expected).abs() < 1e-12),
+                "{point}: {found:?} {expected}"
+            );
         };
         close(sharp.solid_distance(point), to_a);
         // To the nearest point of either, also where it is inside the other.

@@ -191,7 +191,9 @@ fn a_killed_program_leaves_the_old_file_or_the_new_one() {
         assert!(content == old || content == new, "moment {moment}: a part of a file");
         if content == old { kept += 1 } else { written += 1 }
     }
-    println!("killed 60 times: {kept} times the old file, {written} times the new one, {leftovers} leftovers");
+    println!(
+        "killed 60 times: {kept} times the old file, {written} times the new one, {leftovers} leftovers"
+    );
     assert!(kept > 0 && leftovers > 0, "it was killed while it wrote");
     // Leftovers are in nobody's way.
     fs::write(folder.0.join("out.obj.1-0.tmp"), "part").unwrap();
@@ -232,6 +234,8 @@ fn no_memory_leaves_the_file_that_was_there() {
         }
         assert!(folder.files().iter().all(|name| !name.ends_with(".tmp") || run.code > 1));
     }
-    println!("{done} runs done, {told} told that there is no memory, {ended} ended by the system or the runtime");
+    println!(
+        "{done} runs done, {told} told that there is no memory, {ended} ended by the system or the runtime"
+    );
     assert!(done > 0 && told > 0);
 }

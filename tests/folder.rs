@@ -99,7 +99,11 @@ pub struct Run {
 impl From<Output> for Run {
     fn from(output: Output) -> Self {
         let text = |bytes| String::from_utf8(bytes).unwrap();
-        Self { code: output.status.code().unwrap_or(ENDED), out: text(output.stdout), err: text(output.stderr) }
+        Self {
+            code: output.status.code().unwrap_or(ENDED),
+            out: text(output.stdout),
+            err: text(output.stderr),
+        }
     }
 }
 

@@ -151,7 +151,8 @@ fn meshes_refinements_surfaces_and_files() {
 /// Its samples are the largest lists of all.
 #[test]
 fn deviations() {
-    let [first, second] = [sheet(40), sheet(40)].map(|polygons| Mesh::from_polygons(&polygons).expect("a sheet"));
+    let [first, second] =
+        [sheet(40), sheet(40)].map(|polygons| Mesh::from_polygons(&polygons).expect("a sheet"));
     let sampling = Sampling { per_side: 2, threads: 1 };
     let (found, messages) = fail_everywhere(|| {
         compare(&first, &second, sampling, &Job::new()).inspect_err(|error| {

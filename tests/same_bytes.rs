@@ -35,7 +35,18 @@ fn the_program_writes_the_same_bytes_on_any_number_of_threads() {
     let folder = Folder::new("same_bytes");
     let model = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/models/leaf_chair.obj");
     let chair = model.to_str().unwrap();
-    let apply = ["apply", chair, "--feature", "groove", "--mark", "ring:3,331", "--set", "width=1.6", "--set", "depth=0.6"];
+    let apply = [
+        "apply",
+        chair,
+        "--feature",
+        "groove",
+        "--mark",
+        "ring:3,331",
+        "--set",
+        "width=1.6",
+        "--set",
+        "depth=0.6",
+    ];
     let everything =
         ["-o", "out.obj", "--report", "out.json", "--figure", "out.png", "--trace", "out.trace", "--json"];
     let files = ["out.obj", "out.json", "out.png", "out.trace"];
@@ -45,12 +56,19 @@ fn the_program_writes_the_same_bytes_on_any_number_of_threads() {
         ([&apply[..], &everything[..]].concat(), &files),
         ([&sheet[..], &["--mark", "ring:1,2"], &everything[..]].concat(), &files),
         (
-            [&sheet[..], &["--mark", "polyline:0.3,0.4,0;2.1,0.7,0;2.6,1.5,0", "--optimise", "fit+slide"], &everything[..]]
-                .concat(),
+            [
+                &sheet[..],
+                &["--mark", "polyline:0.3,0.4,0;2.1,0.7,0;2.6,1.5,0", "--optimise", "fit+slide"],
+                &everything[..],
+            ]
+            .concat(),
             &files,
         ),
         (vec!["deviation", chair, "groove.ply", "--samples", "2"], &[]),
-        (vec!["limit", chair, "-o", "out.ply", "--level", "1", "--zebra", "out.png"], &["out.ply", "out.png"]),
+        (
+            vec!["limit", chair, "-o", "out.ply", "--level", "1", "--zebra", "out.png"],
+            &["out.ply", "out.png"],
+        ),
         (vec!["quality", chair, "--json"], &[]),
         (vec!["patches", "sheet.obj", "-o", "out.json"], &["out.json"]),
         (vec!["check", chair], &[]),
@@ -59,7 +77,8 @@ fn the_program_writes_the_same_bytes_on_any_number_of_threads() {
         let expected = written(&folder, &arguments, files);
         assert!(expected.iter().map(Vec::len).sum::<usize>() > 200, "{arguments:?}");
         let threaded = ["apply", "deviation"].contains(&arguments[0]);
-        for more in if threaded { vec![vec!["--threads", "2"], vec!["--threads", "0"]] } else { vec![vec![]] } {
+        for more in if threaded { vec![vec!["--threads", "2"], vec!["--threads", "0"]] } else { vec![vec![]] }
+        {
             let again = written(&folder, &[&arguments[..], &more].concat(), files);
             assert!(again == expected, "{arguments:?} {more:?}: other bytes");
         }

@@ -111,7 +111,10 @@ fn unsafe_code_is_refused_but_in_the_c_abi() {
         std::fs::read_to_string(path).unwrap()
     };
     let library = source("lib.rs");
-    assert!(library.contains("\n#![deny(unsafe_code)]\n") && source("main.rs").contains("#![forbid(unsafe_code)]"));
+    assert!(
+        library.contains("\n#![deny(unsafe_code)]\n")
+            && source("main.rs").contains("#![forbid(unsafe_code)]")
+    );
     let allowed: Vec<&str> = library.split("#[allow(unsafe_code").skip(1).collect();
     assert!(allowed.len() == 1 && allowed[0].lines().nth(1) == Some("pub mod ffi;"), "{allowed:?}");
     // No other file takes it back.

@@ -1,8 +1,8 @@
 //! Closing the holes that removed elements leave, and turning a mesh back into polygons.
 
-use crate::memory::{self, OutOfMemory};
 use super::ids::{DEAD, FaceId, HalfEdgeId, NONE, Node, VertexId};
 use super::{Mesh, Polygons};
+use crate::memory::{self, OutOfMemory};
 
 /// Old id -> new id per kind of element; `None` for what was removed.
 #[derive(Clone, PartialEq, Eq, Debug)]
@@ -140,10 +140,7 @@ impl Mesh {
         // With those of the boundary, which are few.
         let corners = self.half_edges.len();
         let mut polygons = Polygons {
-            positions: memory::collected(
-                self.vertices.len(),
-                self.vertices().map(|v| self.position(v)),
-            )?,
+            positions: memory::collected(self.vertices.len(), self.vertices().map(|v| self.position(v)))?,
             face_sizes: memory::room(self.faces.len())?,
             face_vertices: memory::room(corners)?,
             face_sets: memory::room(self.face_sets.len())?,
