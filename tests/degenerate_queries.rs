@@ -258,9 +258,9 @@ fn signed_distances_of_sharp_overlapping_and_hollow_solids() {
     let both = cubes(&[(a, 1.0), (b, 1.0)], f32::INFINITY);
     let hollow = cubes(&[(a, 1.0), (a, -0.5)], f32::INFINITY);
     let mut inside_both = 0;
-    for k in 0..600 {
+    for k in 0..2000 {
         let at = |factor: f64| (f64::from(k) * factor).sin();
-        let point = DVec3::new(at(12.9), at(78.2), at(37.7)) * 2.5;
+        let point = DVec3::new(at(12.9), at(78.2), at(37.7)) * 1.6;
         let (to_a, to_b) = (cube_distance(point, a, 1.0), cube_distance(point, b, 1.0));
         let close = |found: Option<f64>, expected: f64| {
             assert!(

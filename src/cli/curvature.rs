@@ -68,7 +68,12 @@ pub fn picture(mesh: &Mesh, quality: &Quality) -> Result<Image, Failure> {
     let shape = shape(&polygons);
     let panels = vec![
         Panel {
-            content: Content::Cage { shape: self::shape(&cage), edges: &[], displaced: &extraordinary },
+            content: Content::Cage {
+                shape: self::shape(&cage),
+                edges: &[],
+                vertices: &extraordinary,
+                label: "extraordinary",
+            },
             caption: &caption,
         },
         Panel {

@@ -114,7 +114,7 @@ static void lines(const welt_surface *smooth, const welt_surface *sharp, const w
     count = hits(sharp, -5, 1, 1, 1, 0, 0, found);
     check(count >= 1 && count <= 8, "along an edge");
     count = hits(flat, -5, 1, 0, 1, 0, 0, found);
-    check(count >= 1 && count <= 6, "in a flat surface, along edges");
+    check(count >= 1 && count <= 8, "in a flat surface, along edges");
     for (i = 0; i < count; ++i)
         check(near(found[i].position[0], found[i].distance - 5) && near(found[i].position[1], 1), "a point of the line");
     check(hits(flat, -5, 0, 0, 1, 0, 0, found) >= 1, "along the border");
