@@ -381,7 +381,10 @@ fn pictures(rules: &RuleSet, folder: &std::path::Path) {
         let image = Figure {
             title: name,
             panels: vec![
-                panel(Content::Cage { shape: control, edges: &[], displaced: &greens }, "control mesh"),
+                panel(
+                    Content::Cage { shape: control, edges: &[], vertices: &greens, label: "displaced" },
+                    "control mesh",
+                ),
                 panel(
                     Content::Surface { shape, normals: &normals, finish: Finish::ReflectionLines },
                     "reflection lines",

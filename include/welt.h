@@ -1416,6 +1416,28 @@ int32_t welt_mesh_deviation(const welt_mesh *first,
                             welt_error **error);
 
 /*
+ Measures how far the limit surfaces of two control meshes are apart, both ways, and how their normals and curvatures differ.
+
+ first, second: must not be NULL.
+ samples: samples per side of each face, 1 to 64; 8 is usual.
+ threads: 0 for as many as the machine has; the result does not depend on it.
+ values: receives 6 doubles: the three of welt_mesh_deviation; the largest angle between the normals of a point and of its
+ closest point, in degrees; the root mean square and the largest difference of the mean curvatures there, per model unit.
+ Beside extraordinary vertices curvature is not bounded, so that the last figure grows with samples.
+ job: may be NULL.
+
+ Fails with WELT_ERROR_ARGUMENT, WELT_ERROR_CANCELLED and WELT_ERROR_MEMORY. Since: 0.1.
+ */
+WELT_API
+int32_t welt_mesh_compare(const welt_mesh *first,
+                          const welt_mesh *second,
+                          uint32_t samples,
+                          uint32_t threads,
+                          double *values,
+                          const welt_job *job,
+                          welt_error **error);
+
+/*
  Freezes the limit surface of a mesh.
 
  mesh: must not be NULL.
@@ -1556,7 +1578,9 @@ int32_t welt_surface_closest(const welt_surface *surface,
                              welt_error **error);
 
 /*
- Measures the distance of each of many points to a closed surface, negative inside.
+ Measures the distance of each of many points to a closed surface, negative inside: where the winding number of the
+ surface is positive. Parts that overlap count as one solid; what lies in a hollow, whose normals point inwards, is outside.
+ The distance is that of the nearest point of the surface, also where this lies inside another part.
 
  surface: must not be NULL.
  points: x, y and z of each point.

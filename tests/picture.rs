@@ -134,7 +134,7 @@ fn figure<'a>(
         title: "A figure",
         panels: vec![
             Panel {
-                content: Content::Cage { shape: cage.shape(), edges, displaced: &[0, 3] },
+                content: Content::Cage { shape: cage.shape(), edges, vertices: &[0, 3], label: "displaced" },
                 caption: "control mesh",
             },
             Panel {
@@ -210,7 +210,7 @@ fn marked(edge: (u32, u32)) -> (usize, usize) {
     walls.push(&[0, 1, 2, 3]);
     walls.push(&[4, 5, 6, 7]);
     let edges = [(edge.0, edge.1, EdgeKind::Marked)];
-    let content = Content::Cage { shape: walls.shape(), edges: &edges, displaced: &[] };
+    let content = Content::Cage { shape: walls.shape(), edges: &edges, vertices: &[], label: "" };
     let camera = Camera::framing(&walls.positions, DVec3::Z, DVec3::Y);
     let panels = vec![Panel { content, caption: "" }];
     let image = Figure { title: "", panels, camera, width: 300, height: 300 }.render();

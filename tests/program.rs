@@ -330,6 +330,13 @@ fn quality_and_reflection_lines() {
     folder.welt(&["limit", "sheet.obj", "-o", "out.obj", "--zebra", "absent/z.png"]).fails(1, &["absent"]);
     folder.welt(&["limit", "sheet.obj", "-o", "out.obj", "--zebra", "z.png"]).succeeds();
     assert!(fs::read(folder.0.join("z.png")).unwrap().starts_with(b"\x89PNG"));
+    folder.welt(&["quality", "sheet.obj", "--picture", "q.png"]).succeeds();
+    assert!(fs::read(folder.0.join("q.png")).unwrap().starts_with(b"\x89PNG"));
+    folder
+        .welt(&["limit", "sheet.obj", "-o", "out.obj", "--curvature", "mean"])
+        .fails(2, &["--curvature", ".ply"]);
+    folder.welt(&["limit", "sheet.obj", "-o", "out.ply", "--curvature", "mean"]).succeeds();
+    assert!(String::from_utf8_lossy(&fs::read(folder.0.join("out.ply")).unwrap()).contains("quality"));
 }
 
 #[test]

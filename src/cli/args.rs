@@ -90,6 +90,18 @@ pub struct Check {
 }
 
 #[derive(Clone, Copy, ValueEnum)]
+pub enum CurvatureKind {
+    /// The greater principal curvature
+    Greatest,
+    /// The smaller principal curvature
+    Least,
+    /// The mean of both
+    Mean,
+    /// Their product
+    Gaussian,
+}
+
+#[derive(Clone, Copy, ValueEnum)]
 pub enum FitMethod {
     /// Leave vertices where the rules put them
     None,
@@ -184,6 +196,9 @@ pub struct Limit {
     /// Draw the surface with reflection lines, which show unevenness that shading hides
     #[arg(long, value_name = "FILE.png")]
     pub zebra: Option<PathBuf>,
+    /// Write this curvature of the surface as the value "quality" of each vertex of a .ply file, per model unit
+    #[arg(long, value_name = "KIND")]
+    pub curvature: Option<CurvatureKind>,
     #[command(flatten)]
     pub import: Import,
 }
@@ -215,6 +230,9 @@ pub struct Quality {
     /// Print JSON, with all extraordinary vertices
     #[arg(long)]
     pub json: bool,
+    /// Draw the control mesh with its extraordinary vertices, mean curvature, and reflection lines
+    #[arg(long, value_name = "FILE.png")]
+    pub picture: Option<PathBuf>,
     #[command(flatten)]
     pub import: Import,
 }

@@ -21,7 +21,7 @@ pub struct LimitPicture {
 const DRAWN_FACES: usize = 60_000;
 
 /// Levels of refinement that give a smooth picture of a control mesh with `faces` faces.
-fn drawing_level(faces: usize) -> usize {
+pub fn drawing_level(faces: usize) -> usize {
     (1..=4).take_while(|&level| level == 1 || faces << (2 * level) <= DRAWN_FACES).last().unwrap_or(1)
 }
 
@@ -129,7 +129,8 @@ pub fn draw(title: &str, after: &Mesh, report: &Report, limit: &LimitPicture, vi
                         face_vertices: &cage.face_vertices,
                     },
                     edges: &edges,
-                    displaced: &report.green,
+                    vertices: &report.green,
+                    label: "displaced",
                 },
                 caption: &cage_caption,
             },
@@ -155,6 +156,12 @@ pub fn draw(title: &str, after: &Mesh, report: &Report, limit: &LimitPicture, vi
     .render()
 }
 
+/// Looks at all of `points` of the surface of `mesh`, from above and in front.
+pub fn framing(mesh: &Mesh, points: &[DVec3]) -> Camera {
+    let up = up(mesh);
+    Camera::framing(points, ABOVE_IN_FRONT + 0.35 * up, up)
+}
+
 /// The limit surface of `mesh` with reflection lines.
 pub fn reflection_lines(mesh: &Mesh) -> Result<Image, Failure> {
     let level = drawing_level(mesh.face_bound());
@@ -165,8 +172,7 @@ pub fn reflection_lines(mesh: &Mesh) -> Result<Image, Failure> {
         face_vertices: &polygons.face_vertices,
     };
     let content = Content::Surface { shape, normals: &normals, finish: Finish::ReflectionLines };
-    let up = up(mesh);
-    let camera = Camera::framing(&polygons.positions, ABOVE_IN_FRONT + 0.35 * up, up);
+    let camera = framing(mesh, &polygons.positions);
     let panels = vec![Panel { content, caption: "limit surface, reflection lines" }];
     Ok(Figure { title: "", panels, camera, width: 1000, height: 1000 }.render())
 }

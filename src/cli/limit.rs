@@ -1,6 +1,7 @@
 //! `welt limit`.
 
 use super::args::Limit;
+use super::curvature;
 use super::error::Failure;
 use super::figure;
 use super::files;
@@ -17,6 +18,11 @@ pub fn run(arguments: &Limit) -> Result<ExitCode, Failure> {
     if let Some(file) = &arguments.zebra {
         files::check_output(file)?;
     }
+    if arguments.curvature.is_some() && Format::of(&arguments.output) != Some(Format::Ply) {
+        return Err(Failure::usage(
+            "--curvature needs a .ply file as the output: only there vertices have values",
+        ));
+    }
     let mesh = files::import(&arguments.input, &arguments.import)?;
     let level = usize::from(arguments.level);
     if let Some(file) = &arguments.zebra {
@@ -31,7 +37,12 @@ pub fn run(arguments: &Limit) -> Result<ExitCode, Failure> {
     if Format::of(&arguments.output) == Some(Format::Ply) {
         let refinement = Refinement::new(&mesh, level)?;
         let (polygons, normals) = limit_mesh_with_normals(&refinement, &mesh, level)?;
-        let options = io::ply::Options { normals: Some(&normals), ..Default::default() };
+        let values = match arguments.curvature {
+            Some(kind) => Some(curvature::at_vertices(&refinement, &mesh, level, curvature::value(kind))?),
+            None => None,
+        };
+        let options =
+            io::ply::Options { normals: Some(&normals), quality: values.as_deref(), ..Default::default() };
         io::save(&arguments.output, |out| io::ply::write(&polygons, &options, out))?;
     } else {
         let polygons = limit_mesh(&mesh, level)?;
@@ -66,7 +77,7 @@ pub fn limit_mesh_with_normals(
 }
 
 /// Level `level` of `mesh`: another control mesh of the same surface.
-fn refined_control(refinement: &Refinement, mesh: &Mesh, level: usize) -> Result<Polygons, OutOfMemory> {
+pub fn refined_control(refinement: &Refinement, mesh: &Mesh, level: usize) -> Result<Polygons, OutOfMemory> {
     let positions = refinement.positions(level, &refinement.control_positions(mesh))?;
     refinement.polygons(level, positions)
 }

@@ -5,6 +5,7 @@ mod apply;
 mod args;
 mod batch;
 mod check;
+mod curvature;
 mod demo;
 mod deviation;
 mod error;

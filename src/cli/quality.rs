@@ -1,6 +1,7 @@
 //! `welt quality`.
 
 use super::args;
+use super::curvature;
 use super::error::Failure;
 use super::files;
 use super::output::print;
@@ -10,8 +11,15 @@ use std::process::ExitCode;
 use welt::surface::Quality;
 
 pub fn run(arguments: &args::Quality) -> Result<ExitCode, Failure> {
+    if let Some(file) = &arguments.picture {
+        files::check_output(file)?;
+    }
     let mesh = files::import(&arguments.input, &arguments.import)?;
     let quality = Quality::of(&mesh, arguments.worst);
+    if let Some(file) = &arguments.picture {
+        let image = curvature::picture(&mesh, &quality)?;
+        welt::io::save(file, |out| image.write_png(out))?;
+    }
     if arguments.json {
         let text = files::json(&quality)?;
         print(|out| writeln!(out, "{text}"))?;

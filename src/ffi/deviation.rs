@@ -54,9 +54,8 @@ pub unsafe extern "C" fn welt_mesh_deviation(
 ) -> i32 {
     let body = || {
         // SAFETY: the header asks for living meshes, a job or NULL, and room for three doubles.
-        let (values, found) = unsafe {
-            (Buffer::new(values, 3, 3, "values")?, measure(first, second, [samples, 1], job)?)
-        };
+        let (values, found) =
+            unsafe { (Buffer::new(values, 3, 3, "values")?, measure(first, second, [samples, 1], job)?) };
         values.fill([found.max, found.rms, found.p95]);
         Ok(())
     };

@@ -114,8 +114,8 @@ impl Layout {
                 let range = panel::value_range(values, range);
                 legend::bar(image, range, label, middle, self.legend_top, width as f64 * 0.72, text);
             }
-            Content::Cage { edges, displaced, .. } => {
-                let entries = cage_entries(edges, displaced);
+            Content::Cage { edges, vertices, label, .. } => {
+                let entries = cage_entries(edges, vertices, label);
                 legend::swatches(image, &entries, middle, self.legend_top, width as f64, text);
             }
             Content::Surface { .. } => {}
@@ -131,21 +131,25 @@ impl Layout {
 fn legend_height(content: &Content<'_>, unit: f64) -> f64 {
     match content {
         Content::Scalar { .. } => 62.0 * unit,
-        Content::Cage { edges, displaced, .. } if !edges.is_empty() || !displaced.is_empty() => 50.0 * unit,
+        Content::Cage { edges, vertices, .. } if !edges.is_empty() || !vertices.is_empty() => 50.0 * unit,
         _ => 0.0,
     }
 }
 
 /// The entries of a cage's legend: only what occurs.
-fn cage_entries(edges: &[(u32, u32, EdgeKind)], displaced: &[u32]) -> Vec<(Swatch, [u8; 3], &'static str)> {
+fn cage_entries<'a>(
+    edges: &[(u32, u32, EdgeKind)],
+    vertices: &[u32],
+    label: &'a str,
+) -> Vec<(Swatch, [u8; 3], &'a str)> {
     let mut entries = Vec::new();
     for kind in EdgeKind::ALL {
         if edges.iter().any(|edge| edge.2 == kind) {
             entries.push((Swatch::Line(kind.width()), kind.colour(), kind.name()));
         }
     }
-    if !displaced.is_empty() {
-        entries.push((Swatch::Disc(panel::DISC_DIAMETER), panel::DISPLACED, "displaced"));
+    if !vertices.is_empty() {
+        entries.push((Swatch::Disc(panel::DISC_DIAMETER), panel::EMPHASISED, label));
     }
     entries
 }

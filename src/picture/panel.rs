@@ -26,8 +26,10 @@ pub enum Content<'a> {
         shape: Shape<'a>,
         /// Edges to emphasise: two vertices and what they are.
         edges: &'a [(u32, u32, EdgeKind)],
-        /// Vertices to emphasise as moved by a displacement.
-        displaced: &'a [u32],
+        /// Vertices to emphasise.
+        vertices: &'a [u32],
+        /// What these vertices are, for the legend, e.g. "displaced".
+        label: &'a str,
     },
     /// A smooth surface under studio light or with reflection lines.
     Surface {
@@ -94,8 +96,8 @@ impl EdgeKind {
     }
 }
 
-/// Discs of displaced vertices.
-pub(super) const DISPLACED: [u8; 3] = [22, 150, 62];
+/// Discs of emphasised vertices.
+pub(super) const EMPHASISED: [u8; 3] = [22, 150, 62];
 /// Diameter of those discs in pixels.
 pub(super) const DISC_DIAMETER: f64 = 6.0;
 
@@ -119,7 +121,7 @@ pub(super) fn value_range(values: &[f64], range: Option<f64>) -> f64 {
 /// Draws `content` on `canvas`.
 pub(super) fn draw(content: &Content<'_>, view: &View, canvas: &mut Canvas) {
     match *content {
-        Content::Cage { shape, edges, displaced } => cage(&shape, edges, displaced, view, canvas),
+        Content::Cage { shape, edges, vertices, .. } => cage(&shape, edges, vertices, view, canvas),
         Content::Surface { shape, normals, finish } => {
             let albedo = from_srgb(SURFACE);
             match finish {
@@ -196,7 +198,7 @@ fn facing(triangle: &[Corner<4>; 3]) -> f32 {
 fn cage(
     shape: &Shape<'_>,
     emphasised: &[(u32, u32, EdgeKind)],
-    displaced: &[u32],
+    vertices: &[u32],
     view: &View,
     canvas: &mut Canvas,
 ) {
@@ -227,9 +229,9 @@ fn cage(
             }
         }
     }
-    for &at in displaced.iter().filter_map(|&v| points.get(v as usize)) {
+    for &at in vertices.iter().filter_map(|&v| points.get(v as usize)) {
         canvas.disc(at, pen([255; 3], DISC_DIAMETER + 1.6));
-        canvas.disc(at, pen(DISPLACED, DISC_DIAMETER));
+        canvas.disc(at, pen(EMPHASISED, DISC_DIAMETER));
     }
 }
 

@@ -100,7 +100,11 @@ impl Tree {
     ///
     /// # Errors
     /// [`OutOfMemory`].
-    pub(super) fn gather<T: Copy>(&self, leaf: impl Fn(u32) -> T, join: impl Fn(T, T) -> T) -> Result<Vec<T>, OutOfMemory> {
+    pub(super) fn gather<T: Copy>(
+        &self,
+        leaf: impl Fn(u32) -> T,
+        join: impl Fn(T, T) -> T,
+    ) -> Result<Vec<T>, OutOfMemory> {
         // From the last to the first, for children stand behind their parent.
         let mut reversed: Vec<T> = memory::room(self.nodes.len())?;
         let last = self.nodes.len().saturating_sub(1);

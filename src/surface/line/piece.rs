@@ -80,8 +80,8 @@ pub(super) fn crossings(bicubic: &Bicubic, tolerance: f64, parts: &mut u32, out:
 /// True where the patch is flat and the axis lies in its plane: they share a line or nothing, of which one point is wanted.
 fn lies_in_its_plane(bicubic: &Bicubic, tolerance: f64) -> bool {
     let points = || bicubic.points.as_flattened().iter().map(|p| p.truncate());
-    let farthest =
-        points().fold(DVec2::ZERO, |most, p| if p.length_squared() > most.length_squared() { p } else { most });
+    let farthest = points()
+        .fold(DVec2::ZERO, |most, p| if p.length_squared() > most.length_squared() { p } else { most });
     let way = farthest.normalize_or_zero();
     points().all(|p| p.perp_dot(way).abs() <= tolerance)
 }
