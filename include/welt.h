@@ -509,7 +509,7 @@ typedef struct {
     uint32_t neighbour_sides[4];
     /*
      Per corner, at which side of the same number begins, not 0 where an extraordinary vertex lies there: in the last
-     span beside it the patch is an approximation. Everywhere else it is the limit surface itself.
+     two spans beside it the patch is an approximation. Everywhere else it is the limit surface itself.
      */
     uint32_t irregular[4];
     /*
@@ -705,7 +705,7 @@ WELT_API void welt_mesh_free(welt_mesh *mesh);
  mesh: must not be NULL.
  copy: receives the handle; free it with welt_mesh_free.
 
- Selections that were made on the mesh serve the copy too. Since: 0.1.
+ Selections that were made on the mesh serve the copy too. Fails with WELT_ERROR_MEMORY. Since: 0.1.
  */
 WELT_API int32_t welt_mesh_copy(const welt_mesh *mesh, welt_mesh **copy, welt_error **error);
 
@@ -921,7 +921,7 @@ int32_t welt_mesh_import_memory(const char *name,
  path: UTF-8.
  path_length: in bytes, SIZE_MAX for a NUL-terminated path.
 
- Fails with WELT_ERROR_FILE. Since: 0.1.
+ Fails with WELT_ERROR_FILE and WELT_ERROR_MEMORY. Since: 0.1.
  */
 WELT_API
 int32_t welt_mesh_export_file(const welt_mesh *mesh,
@@ -1405,7 +1405,7 @@ int32_t welt_mesh_displace(welt_mesh *mesh,
  model units: 3 doubles.
  job: may be NULL.
 
- Fails with WELT_ERROR_ARGUMENT and WELT_ERROR_CANCELLED. Since: 0.1.
+ Fails with WELT_ERROR_ARGUMENT, WELT_ERROR_CANCELLED and WELT_ERROR_MEMORY. Since: 0.1.
  */
 WELT_API
 int32_t welt_mesh_deviation(const welt_mesh *first,
@@ -1692,7 +1692,8 @@ int32_t welt_patches_get(const welt_patches *patches,
  patches: must not be NULL.
  report: receives a report whose JSON has patches, exact, approximate and faces (numbers), rings (of exact pieces round
  extraordinary vertices), max_deviation (in units of the model), max_relative_deviation (in parts of the mean length of
- the edges of the control face) and max_normal_jump (greatest angle in degrees between the normals of two patches along
+ the edges of the control face), rms_relative_deviation (root mean square of what was measured in the spans beside
+ extraordinary vertices) and max_normal_jump (greatest angle in degrees between the normals of two patches along
  a side that is no crease). Free it with welt_report_free.
 
  Since: 0.1.

@@ -10,8 +10,11 @@
 //!
 //! [`picture`] and [`ffi`] (the C ABI) stand on top; nothing imports them.
 
+#![deny(unsafe_code)]
+
 mod fault;
 pub mod feature;
+#[allow(unsafe_code, reason = "pointers of callers in C")]
 pub mod ffi;
 pub mod gml;
 pub mod grammar;

@@ -1,5 +1,7 @@
 //! The command line program: `welt --help`.
 
+#![forbid(unsafe_code)]
+
 mod cli;
 
 use std::process::ExitCode;

@@ -56,6 +56,7 @@ fn header_is_up_to_date() {
         "selection",
         "rules",
         "feature",
+        "deviation",
         "surface",
         "evaluate",
         "query",

@@ -2,19 +2,12 @@
 //! nothing changed. What is large and allowed works.
 
 use crate::common;
-use glam::DVec3;
+use crate::folder::Folder;
 use std::time::{Duration, Instant};
-use welt::feature::{self, FeatureError, Options, Report, Request};
 use welt::grammar::{self, Limits, RuleSet, RunOptions};
 use welt::io::{self, Format, ImportOptions};
-use welt::job::Job;
-use welt::mark::{Selection, Selector};
-use welt::mesh::{FaceId, Mesh, Node, Polygons, Value, VertexId};
-use welt::subdivision::{Refinement, limit_normal, limit_points, limit_position, refine};
-use welt::surface::{ClosestOptions, LimitSurface, PatchOptions, Patches, Sampling, compare};
-
-/// Faces at the pole of [`pole`].
-const VALENCE: u32 = 64;
+use welt::mesh::{FaceId, Mesh, Node, Value, VertexId};
+use welt::subdivision::Refinement;
 
 /// The message of a file that must be refused, at once.
 fn refused(format: Format, name: &str, content: &[u8]) -> String {
@@ -79,114 +72,6 @@ fn a_polygon_of_a_million_sides_is_refused_at_once() {
     let options = ImportOptions { limits, ..ImportOptions::default() };
     let import = io::import_bytes("a.obj", Format::Obj, text.as_bytes(), &options).expect("allowed");
     assert_eq!(import.mesh.arity(FaceId(0)), SIDES as usize);
-}
-
-/// A disk round a pole in which 64 triangles meet, with two rings of quads; flat, unless `height` lifts the pole. Vertex 0 is
-/// the pole, 1 to 64 the first ring.
-fn pole(height: f64) -> Mesh {
-    let at = |ring: u32, i: u32| {
-        let angle = std::f64::consts::TAU * f64::from(i) / f64::from(VALENCE);
-        DVec3::new(angle.cos(), angle.sin(), 0.0) * f64::from(ring)
-    };
-    let mut positions = vec![DVec3::Z * height];
-    positions.extend((1..=3).flat_map(|ring| (0..VALENCE).map(move |i| at(ring, i))));
-    let mut polygons = Polygons { positions, ..Polygons::default() };
-    for i in 0..VALENCE {
-        let next = (i + 1) % VALENCE;
-        polygons.face_sizes.extend([3, 4, 4]);
-        polygons.face_vertices.extend([0, 1 + i, 1 + next]);
-        for ring in 0..2 {
-            let (inner, outer) = (1 + ring * VALENCE, 1 + (ring + 1) * VALENCE);
-            polygons.face_vertices.extend([inner + i, outer + i, outer + next, inner + next]);
-        }
-    }
-    Mesh::from_polygons(&polygons).expect("a disk")
-}
-
-fn apply(mesh: &mut Mesh, marks: &[&str], features: &[&str], set: &[&str]) -> Result<Report, FeatureError> {
-    let selectors: Vec<Selector> = marks.iter().map(|m| Selector::parse(m).expect("a selector")).collect();
-    let selection = Selection::resolve(mesh, &selectors).expect("marks");
-    let request = Request::features(features, set).expect("a request");
-    feature::apply(mesh, &selection, &request, &Options::default(), &Job::new())
-}
-
-#[track_caller]
-fn finite(points: impl IntoIterator<Item = DVec3>) {
-    assert!(points.into_iter().all(DVec3::is_finite));
-}
-
-/// By symmetry the pole of the flat disk is its own limit, and normals point upwards.
-#[test]
-fn a_pole_of_64_faces_can_be_refined_evaluated_and_queried() {
-    let mesh = pole(0.0);
-    assert_eq!(mesh.valence(VertexId(0)), VALENCE as usize);
-    assert!(limit_position(&mesh, VertexId(0)).length() < 1e-12);
-    assert!(limit_normal(&mesh, VertexId(0)).expect("a normal").distance(DVec3::Z) < 1e-12);
-    let refined = refine(&mesh, 4).expect("fits");
-    assert!(refined.positions[0].length() < 1e-12);
-    assert!(refined.positions.iter().all(|p| p.is_finite() && p.z == 0.0 && p.length() <= 3.0 + 1e-12));
-    finite(limit_points(&mesh).iter().map(|point| point.position));
-
-    let surface = LimitSurface::new(&mesh);
-    for face in mesh.faces() {
-        for corner in 0..surface.patch_count(face) {
-            for (u, v) in [(0.0, 0.0), (1e-9, 1e-9), (0.5, 0.5), (1.0, 1.0)] {
-                let point = surface.evaluate(face, corner, u, v).expect("a point");
-                assert!(point.position.is_finite() && point.position.z.abs() < 1e-12);
-            }
-        }
-    }
-    let foot = surface.closest(DVec3::new(0.001, 0.002, 5.0), &ClosestOptions::default()).expect("a foot");
-    assert!((foot.distance - 5.0).abs() < 1e-9, "{}", foot.distance);
-    let hits = surface.line_hits(DVec3::new(1e-4, 2e-4, 1.0), DVec3::NEG_Z);
-    assert!(!hits.is_empty() && hits.iter().all(|hit| (hit.s - 1.0).abs() < 1e-9));
-    let deviation =
-        compare(&mesh, &pole(0.0), Sampling { per_side: 2, threads: 1 }, &Job::new()).expect("not cancelled");
-    assert!(deviation.both.max < 1e-9);
-    let faces: Vec<FaceId> = mesh.faces().collect();
-    let patches = Patches::new(&mesh, &faces, &PatchOptions::default(), &Job::new()).expect("patches");
-    assert!(patches.patches.iter().all(|patch| patch.poles.iter().all(|pole| pole.is_finite())));
-    // Out and in again.
-    let mut text = Vec::new();
-    io::obj::write(&mesh.to_polygons(), &mut text).expect("written");
-    let again = io::import_bytes("a.obj", Format::Obj, &text, &ImportOptions::default()).expect("read").mesh;
-    assert_eq!(again.to_polygons(), mesh.to_polygons());
-}
-
-/// Features round the pole, beside it, and through it: done, or refused in words, and then nothing has changed.
-#[test]
-fn features_meet_a_pole_of_64_faces() {
-    let all: Vec<String> = (1..=VALENCE).map(|v| format!("edge:0,{v}")).collect();
-    let all: Vec<&str> = all.iter().map(String::as_str).collect();
-    let cases: [(&str, Vec<&str>); 5] = [
-        ("all edges round it", vec!["cut:0"]),
-        ("each of them", all),
-        ("one", vec!["edge:0,1"]),
-        ("two opposite ones", vec!["edge:0,1", "edge:0,33"]),
-        ("a ring beside it", vec!["ring:1,65"]),
-    ];
-    let mut done = 0;
-    for (name, marks) in cases {
-        for feature in ["groove", "ridge", "dent", "loop"] {
-            let mut mesh = pole(0.3);
-            let before = mesh.to_polygons();
-            let start = Instant::now();
-            match apply(&mut mesh, &marks, &[feature], &[]) {
-                Ok(report) => {
-                    mesh.validate_control_mesh().expect(name);
-                    finite(mesh.vertices().map(|v| mesh.position(v)));
-                    assert!(report.leftovers.is_empty(), "{name}: {report}");
-                    done += 1;
-                }
-                Err(error) => {
-                    assert!(error.to_string().contains(' '), "{name}: {error}");
-                    assert_eq!(mesh.to_polygons(), before, "{name}");
-                }
-            }
-            assert!(start.elapsed() < Duration::from_secs(5), "{name}, {feature}: {:?}", start.elapsed());
-        }
-    }
-    assert!(done >= 12, "{done} of 20 were applied");
 }
 
 fn marked(mesh: &mut Mesh, name: &str) {
@@ -283,4 +168,56 @@ fn a_refinement_too_deep_is_refused_before_it_is_begun() {
         assert!(start.elapsed() < Duration::from_secs(1));
         assert_eq!(error.to_string(), message);
     }
+}
+
+#[test]
+fn limits_of_files_on_the_command_line() {
+    let folder = Folder::new("limits");
+    let check = |limit: &str| folder.welt(&["check", "sheet.obj", "--limit", limit]);
+    // The sheet has exactly these.
+    for (name, count) in [("vertices", 12), ("faces", 7), ("face-vertices", 4), ("vertex-faces", 5)] {
+        for enough in [count, u64::MAX] {
+            check(&format!("{name}={enough}")).succeeds();
+        }
+        for few in [0, count - 1] {
+            check(&format!("{name}={few}")).fails(1, &["sheet.obj", "raise the limit"]);
+        }
+    }
+    let known = "there are vertices, faces, face-vertices, vertex-faces";
+    check("corners=3").fails(2, &["there is no limit corners", known]);
+    check("faces").fails(2, &["write NAME=COUNT"]);
+    for count in ["-1", "1e3", "", "many", "18446744073709551616"] {
+        check(&format!("faces={count}"))
+            .fails(2, &[&format!("{count} is no whole number from 0 to 2^64 - 1")]);
+    }
+}
+
+#[test]
+fn limits_of_rules_on_the_command_line() {
+    let folder = Folder::new("rule_limits");
+    let sizes = ["--mark", "ring:1,2", "--set", "width=0.2", "--set", "depth=0.05", "--no-deviation"];
+    let groove = |limits: &[&str]| {
+        let limits: Vec<&str> = limits.iter().flat_map(|limit| ["--rule-limit", limit]).collect();
+        folder.groove(&[&sizes[..], &limits].concat())
+    };
+    let cases: [(&[&str], &str); 7] = [
+        (&["applications=1"], "more than 1 applications"),
+        (&["steps=5"], "more than 5 steps"),
+        (&["changes=5"], "more than 5 changes"),
+        (&["depth=0"], "more than 0 procedures and loops inside one another"),
+        (&["growth=1", "extra=2"], "vertices, edges and faces"),
+        (&["extra=3", "growth=1"], "vertices, edges and faces"),
+        (&["seconds=0"], "more than 0 s"),
+    ];
+    for (limits, words) in cases {
+        groove(limits).fails(1, &[words, "raise the limit"]);
+        assert_eq!(folder.files(), ["sheet.obj"], "{limits:?}");
+        let (name, _) = limits[0].split_once('=').expect("a limit");
+        groove(&[&format!("{name}=18446744073709551615")]).succeeds();
+        std::fs::remove_file(folder.0.join("out.obj")).expect("written");
+    }
+    groove(&["width=3"])
+        .fails(2, &["there is no limit width", "applications, steps, changes, depth, growth, extra"]);
+    groove(&["steps"]).fails(2, &["write NAME=COUNT"]);
+    groove(&["seconds=0.5"]).fails(2, &["0.5 is no whole number"]);
 }

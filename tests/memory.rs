@@ -8,7 +8,7 @@ use welt::io::{self, Format, ImportError, ImportOptions};
 use welt::job::Job;
 use welt::mesh::{Defect, FaceId, Mesh, Polygons};
 use welt::subdivision::{RefineError, Refinement};
-use welt::surface::{FreezeError, LimitSurface};
+use welt::surface::{FreezeError, LimitSurface, Sampling, compare};
 
 /// What is large, in bytes.
 const LARGE: usize = 64 << 10;
@@ -122,6 +122,17 @@ fn meshes_refinements_surfaces_and_files() {
     told(&messages, 4, "");
     assert_eq!(surface.faces().count(), faces.len());
 
+    let ((), messages) = fail_everywhere(|| surface.prepare());
+    println!("what queries search: {} large lists", messages.len());
+    told(&messages, 4, "");
+    let (copy, messages) = fail_everywhere(|| mesh.try_clone());
+    println!("a copy: {} large lists", messages.len());
+    told(&messages, 4, "");
+    let (again, messages) = fail_everywhere(|| copy.try_to_polygons());
+    println!("polygons of a mesh: {} large lists", messages.len());
+    told(&messages, 4, "");
+    assert!(again == polygons);
+
     let mut text = Vec::new();
     io::obj::write(&polygons, &mut text).expect("written");
     let mut ply = Vec::new();
@@ -135,6 +146,23 @@ fn meshes_refinements_surfaces_and_files() {
         told(&messages, 10, "a: ");
         assert_eq!(import.mesh.faces().count(), faces.len());
     }
+}
+
+/// Its samples are the largest lists of all.
+#[test]
+fn deviations() {
+    let [first, second] =
+        [sheet(40), sheet(40)].map(|polygons| Mesh::from_polygons(&polygons).expect("a sheet"));
+    let sampling = Sampling { per_side: 2, threads: 1 };
+    let (found, messages) = fail_everywhere(|| {
+        compare(&first, &second, sampling, &Job::new()).inspect_err(|error| {
+            assert!(matches!(error, FreezeError::Memory(_)));
+        })
+    });
+    println!("a deviation: {} large lists", messages.len());
+    told(&messages, 8, "");
+    assert_eq!(found.both.samples, 2 * 40 * 40 * 4);
+    assert!(found.both.max < 1e-9, "{}", found.both.max);
 }
 
 /// A copy whose memory is not refused.

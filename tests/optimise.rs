@@ -79,7 +79,7 @@ fn surface_fits_come_back_to_the_surface() {
             Sampling { per_side: 4, threads: 1 },
             &Job::new(),
         );
-        Deviation::of(&samples.expect("not cancelled")).max / target.reach
+        Deviation::of(&samples.expect("not cancelled")).expect("memory").max / target.reach
     };
     for method in [Method::Fit, Method::FitSlide] {
         let mut pushed = mesh.clone();

@@ -103,3 +103,31 @@ fn no_dependency_needs_a_newer_compiler() {
         assert!(version(needed)[..2] <= promised[..2], "{} needs {needed}", name(&package));
     }
 }
+
+#[test]
+fn unsafe_code_is_refused_but_in_the_c_abi() {
+    let source = |name: &str| {
+        let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("src").join(name);
+        std::fs::read_to_string(path).unwrap()
+    };
+    let library = source("lib.rs");
+    assert!(
+        library.contains("\n#![deny(unsafe_code)]\n")
+            && source("main.rs").contains("#![forbid(unsafe_code)]")
+    );
+    let allowed: Vec<&str> = library.split("#[allow(unsafe_code").skip(1).collect();
+    assert!(allowed.len() == 1 && allowed[0].lines().nth(1) == Some("pub mod ffi;"), "{allowed:?}");
+    // No other file takes it back.
+    let mut folders = vec![std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("src")];
+    while let Some(folder) = folders.pop() {
+        for entry in std::fs::read_dir(folder).unwrap() {
+            let path = entry.unwrap().path();
+            if path.is_dir() {
+                folders.push(path);
+            } else if !path.ends_with("src/lib.rs") {
+                let text = std::fs::read_to_string(&path).unwrap_or_default();
+                assert!(!text.contains("allow(unsafe_code"), "{}", path.display());
+            }
+        }
+    }
+}

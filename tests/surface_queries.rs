@@ -336,7 +336,7 @@ fn deviation_of_a_shifted_plane_is_the_shift() {
         |sampling| deviation_samples(&high, |_| true, &low, sampling, &Job::new()).expect("not cancelled");
     let one_thread = samples(Sampling::default());
     assert_eq!(one_thread, samples(Sampling { threads: 3, ..Sampling::default() }));
-    let up = Deviation::of(&one_thread);
+    let up = Deviation::of(&one_thread).expect("memory");
     assert_eq!(up.samples, 36 * 64);
     for value in [up.max, up.rms, up.p95] {
         assert!((value - 0.5).abs() < 1e-12);

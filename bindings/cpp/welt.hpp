@@ -597,6 +597,19 @@ public:
         });
     }
 
+    // The same with the largest angle between normals and the differences of mean curvatures.
+    struct Comparison {
+        Deviation deviation;
+        double degrees, curvature_root_mean_square, curvature_largest;
+    };
+    Comparison compare(Mesh const& other, std::uint32_t samples = 8, std::uint32_t threads = 1, Job const* job = nullptr) const {
+        return Job::run(job, [&](welt_job const* watched) {
+            std::array<double, 6> values;
+            detail::call(welt_mesh_compare, get(), other.get(), samples, threads, values.data(), watched);
+            return Comparison{{values[0], values[1], values[2]}, values[3], values[4], values[5]};
+        });
+    }
+
     // Loop subdivision, of triangles.
     Mesh refine_loop(std::uint32_t levels) const {
         return Mesh(detail::make<welt_mesh>(welt_mesh_refine_loop, get(), levels));

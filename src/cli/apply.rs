@@ -1,6 +1,7 @@
-//! `welt apply`.
+//! `welt apply`, for one model.
 
 use super::args::{Apply, FitMethod, Parity};
+use super::batch;
 use super::error::Failure;
 use super::figure::{View, draw, limit_picture};
 use super::files;
@@ -10,7 +11,7 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::sync::Arc;
-use welt::feature::{Options, ProfileError, Request, RequestError};
+use welt::feature::{Options, ProfileError, Report, Request, RequestError};
 use welt::grammar::{Limits, RuleSet, Trace, Tracer};
 use welt::io;
 use welt::mark::{Selection, Selector, parity};
@@ -18,38 +19,19 @@ use welt::optimise::Method;
 use welt::surface::SAMPLES;
 
 pub fn run(arguments: &Apply) -> Result<ExitCode, Failure> {
-    let request = request(arguments)?;
-    let options = options(arguments)?;
-    let selectors: Vec<Selector> = arguments
-        .marks
-        .iter()
-        .map(|text| Selector::parse(text))
-        .collect::<Result<_, _>>()
-        .map_err(Failure::usage)?;
-    check_outputs(arguments)?;
-
-    let mut mesh = files::import(&arguments.input, &arguments.import)?;
-    let before = arguments.figure.as_ref().map(|_| mesh.clone());
-    let selection = Selection::resolve(&mesh, &selectors)?;
-    let result = watch(|job| welt::feature::apply(&mut mesh, &selection, &request, &options, job));
-    // Of an attempt that failed, the trace shows how it came to that.
-    if let (Some(path), Some(tracer)) = (&arguments.trace, &options.tracer) {
-        let lines = tracer.trace().to_lines()?;
-        io::save(path, |out| out.write_all(lines.as_bytes()))?;
+    let [input] = &arguments.inputs[..] else { return batch::run(arguments) };
+    if batch::is_folder(&arguments.output) {
+        return batch::run(arguments);
     }
-    let report = result?;
-
-    files::export(&arguments.output, &mesh)?;
-    if let Some(path) = &arguments.report {
-        files::save_json(path, &report)?;
-    }
-    if let (Some(path), Some(before)) = (&arguments.figure, &before) {
-        let limit = limit_picture(before, &mesh, &report)?;
-        let view = View::of_feature(&mesh, &report, &limit);
-        let title = format!("{}: {} marked edges", report.feature, report.marks);
-        let image = draw(&title, &mesh, &report, &limit, view);
-        io::save(path, |out| image.write_png(out))?;
-    }
+    let work = Work::new(arguments)?;
+    let files = Files {
+        input: input.clone(),
+        output: arguments.output.clone(),
+        report: arguments.report.clone(),
+        figure: arguments.figure.clone(),
+        trace: arguments.trace.clone(),
+    };
+    let report = work.on(&files)?;
     let text = if arguments.json { files::json(&report)? + "\n" } else { report.to_string() };
     // Standard output may carry the mesh.
     if files::is_standard(&arguments.output) {
@@ -60,9 +42,79 @@ pub fn run(arguments: &Apply) -> Result<ExitCode, Failure> {
     Ok(ExitCode::SUCCESS)
 }
 
+/// The files of one model.
+pub struct Files {
+    pub input: PathBuf,
+    pub output: PathBuf,
+    pub report: Option<PathBuf>,
+    pub figure: Option<PathBuf>,
+    pub trace: Option<PathBuf>,
+}
+
+/// What is done to models, as the arguments say.
+pub struct Work<'a> {
+    arguments: &'a Apply,
+    request: Request,
+    replay: Option<Trace>,
+    selectors: Vec<Selector>,
+}
+
+impl<'a> Work<'a> {
+    pub fn new(arguments: &'a Apply) -> Result<Self, Failure> {
+        Ok(Self {
+            arguments,
+            request: request(arguments)?,
+            replay: replay(arguments)?,
+            selectors: arguments
+                .marks
+                .iter()
+                .map(|text| Selector::parse(text))
+                .collect::<Result<_, _>>()
+                .map_err(Failure::usage)?,
+        })
+    }
+
+    /// Does it to one model.
+    pub fn on(&self, files: &Files) -> Result<Report, Failure> {
+        let arguments = self.arguments;
+        check_outputs(files, arguments)?;
+        let options = options(arguments, self.tracer());
+        let mut mesh = files::import(&files.input, &arguments.import)?;
+        let before = files.figure.as_ref().map(|_| mesh.clone());
+        let selection = Selection::resolve(&mesh, &self.selectors)?;
+        let result = watch(|job| welt::feature::apply(&mut mesh, &selection, &self.request, &options, job));
+        // Of an attempt that failed, the trace shows how it came to that.
+        if let (Some(path), Some(tracer)) = (&files.trace, &options.tracer) {
+            let lines = tracer.trace().to_lines()?;
+            io::save(path, |out| out.write_all(lines.as_bytes()))?;
+        }
+        let report = result?;
+
+        files::export(&files.output, &mesh)?;
+        if let Some(path) = &files.report {
+            files::save_json(path, &report)?;
+        }
+        if let (Some(path), Some(before)) = (&files.figure, &before) {
+            let limit = limit_picture(before, &mesh, &report)?;
+            let view = View::of_feature(&mesh, &report, &limit);
+            let title = format!("{}: {} marked edges", report.feature, report.marks);
+            let image = draw(&title, &mesh, &report, &limit, view);
+            io::save(path, |out| image.write_png(out))?;
+        }
+        Ok(report)
+    }
+
+    fn tracer(&self) -> Option<Arc<Tracer>> {
+        match &self.replay {
+            Some(trace) => Some(Arc::new(Tracer::replay(trace.clone()))),
+            None => self.arguments.trace.as_ref().map(|_| Arc::new(Tracer::record())),
+        }
+    }
+}
+
 /// Refuses outputs that cannot be written, before any work is done.
-fn check_outputs(arguments: &Apply) -> Result<(), Failure> {
-    let (report, figure) = (arguments.report.as_deref(), arguments.figure.as_deref());
+fn check_outputs(files: &Files, arguments: &Apply) -> Result<(), Failure> {
+    let (report, figure) = (files.report.as_deref(), files.figure.as_deref());
     if report.is_some_and(files::is_standard) {
         return Err(Failure::usage("--report writes a file; --json prints the report as JSON"));
     }
@@ -73,11 +125,11 @@ fn check_outputs(arguments: &Apply) -> Result<(), Failure> {
             path.display()
         )));
     }
-    files::check_mesh_output(&arguments.output)?;
-    let beside: Vec<&Path> = [report, figure, arguments.trace.as_deref()].into_iter().flatten().collect();
+    files::check_mesh_output(&files.output)?;
+    let beside: Vec<&Path> = [report, figure, files.trace.as_deref()].into_iter().flatten().collect();
     beside.iter().try_for_each(|path| files::check_output(path))?;
     // One would overwrite the other. The mesh may take the place of the mesh that is read.
-    let others = [&arguments.output, &arguments.input].map(PathBuf::as_path);
+    let others = [&files.output, &files.input].map(PathBuf::as_path);
     let others = others.into_iter().chain(arguments.replay.as_deref());
     for (i, path) in beside.iter().enumerate() {
         if others.clone().chain(beside[..i].iter().copied()).any(|other| files::are_same(path, other)) {
@@ -88,15 +140,13 @@ fn check_outputs(arguments: &Apply) -> Result<(), Failure> {
     Ok(())
 }
 
-fn tracer(arguments: &Apply) -> Result<Option<Arc<Tracer>>, Failure> {
-    let Some(path) = &arguments.replay else {
-        return Ok(arguments.trace.as_ref().map(|_| Arc::new(Tracer::record())));
-    };
+fn replay(arguments: &Apply) -> Result<Option<Trace>, Failure> {
+    let Some(path) = &arguments.replay else { return Ok(None) };
     let text =
         std::fs::read_to_string(path).map_err(|e| Failure::error(format_args!("{}: {e}", path.display())))?;
     let trace = Trace::from_lines(&text)
         .map_err(|(line, problem)| Failure::error(format_args!("{}:{line}: {problem}", path.display())))?;
-    Ok(Some(Arc::new(Tracer::replay(trace))))
+    Ok(Some(trace))
 }
 
 fn request(arguments: &Apply) -> Result<Request, Failure> {
@@ -110,10 +160,10 @@ fn request(arguments: &Apply) -> Result<Request, Failure> {
     })
 }
 
-fn options(arguments: &Apply) -> Result<Options, Failure> {
+fn options(arguments: &Apply, tracer: Option<Arc<Tracer>>) -> Options {
     let mut limits = Limits::default();
     arguments.rule_limits.iter().for_each(|limit| limit.set(&mut limits));
-    Ok(Options {
+    Options {
         method: match arguments.optimise {
             FitMethod::None => Method::None,
             FitMethod::Loop => Method::Loop,
@@ -130,6 +180,6 @@ fn options(arguments: &Apply) -> Result<Options, Failure> {
         limits,
         samples: if arguments.no_deviation { 0 } else { SAMPLES },
         threads: arguments.threads,
-        tracer: tracer(arguments)?,
-    })
+        tracer,
+    }
 }

@@ -116,9 +116,10 @@ pub enum Parity {
 
 #[derive(Args)]
 pub struct Apply {
-    /// OBJ or PLY file, or - for OBJ on standard input
-    pub input: PathBuf,
-    /// Where the new control mesh goes (.obj or .ply), or - for OBJ on standard output
+    /// OBJ or PLY files, or - for OBJ on standard input. Of several, those that fail are told, and the others are done
+    #[arg(value_name = "INPUT", required = true)]
+    pub inputs: Vec<PathBuf>,
+    /// Where the new control mesh goes (.obj or .ply), or - for OBJ on standard output; for several, a folder, which is made if missing, and so are those of reports, figures and traces
     #[arg(short, long, value_name = "OUT")]
     pub output: PathBuf,
     /// Feature for marks that name no kind, or KIND=FEATURE: groove, ridge, piping, step, bead, dent, loop, or a profile file ending in .toml
@@ -163,7 +164,7 @@ pub struct Apply {
     /// Apply the rules as a trace says instead of looking for matches; stop where that does not give the same mesh
     #[arg(long, value_name = "FILE")]
     pub replay: Option<PathBuf>,
-    /// Print the report as JSON instead of text
+    /// Print the report as JSON instead of text; of several models a line each
     #[arg(long)]
     pub json: bool,
     #[command(flatten)]

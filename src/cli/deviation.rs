@@ -42,6 +42,10 @@ fn write_table(out: &mut impl Write, size: f64, comparison: &Comparison) -> io::
     for (name, d) in rows {
         writeln!(out, "{name:<18}{:>14.6e}{:>14.6e}{:>14.6e}{:>10}", d.max, d.rms, d.p95, d.samples)?;
     }
+    writeln!(out, "{:<18}{:>14}{:>14}{:>14}", "change of", "normal, deg", "mean curv. max", "rms")?;
+    for (name, d) in rows {
+        writeln!(out, "{name:<18}{:>14.6}{:>14.6e}{:>14.6e}", d.normal, d.curvature_max, d.curvature_rms)?;
+    }
     if size > 0.0 {
         writeln!(out, "relative to the size: max {:.3e}, rms {:.3e}", both.max / size, both.rms / size)?;
     }

@@ -5,7 +5,7 @@ use super::error::Failure;
 use super::output;
 use serde::Serialize;
 use std::io::{ErrorKind, Read, Write};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use welt::io::{self, ExportError, Format, ImportReport, Source};
 use welt::mesh::Mesh;
 
@@ -70,14 +70,16 @@ pub fn check_output(path: &Path) -> Result<(), Failure> {
 
 /// Whether two names lead to one file.
 pub fn are_same(a: &Path, b: &Path) -> bool {
-    let place = |path: &Path| {
-        let folder = match path.parent() {
-            Some(folder) if !folder.as_os_str().is_empty() => folder,
-            _ => Path::new("."),
-        };
-        path.canonicalize().ok().or_else(|| Some(folder.canonicalize().ok()?.join(path.file_name()?)))
-    };
     !is_standard(a) && !is_standard(b) && place(a).is_some_and(|a| place(b) == Some(a))
+}
+
+/// The one name of a file, which need not be there, in a folder that is.
+pub fn place(path: &Path) -> Option<PathBuf> {
+    let folder = match path.parent() {
+        Some(folder) if !folder.as_os_str().is_empty() => folder,
+        _ => Path::new("."),
+    };
+    path.canonicalize().ok().or_else(|| Some(folder.canonicalize().ok()?.join(path.file_name()?)))
 }
 
 /// Writes the control mesh.
@@ -85,7 +87,8 @@ pub fn export(path: &Path, mesh: &Mesh) -> Result<(), Failure> {
     if !is_standard(path) {
         return Ok(io::export(path, mesh)?);
     }
-    output::print(|out| io::obj::write(&mesh.to_polygons(), out))
+    let polygons = mesh.try_to_polygons()?;
+    output::print(|out| io::obj::write(&polygons, out))
 }
 
 pub fn save_json(path: &Path, value: &impl Serialize) -> Result<(), Failure> {

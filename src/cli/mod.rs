@@ -3,6 +3,7 @@
 
 mod apply;
 mod args;
+mod batch;
 mod check;
 mod demo;
 mod deviation;

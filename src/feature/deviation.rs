@@ -3,9 +3,10 @@
 use super::aftermath::affected_faces;
 use super::displace::Green;
 use super::report::{Difference, Warning};
-use crate::job::{Cancelled, Job};
+use crate::job::Job;
+use crate::memory::{self, OutOfMemory};
 use crate::mesh::{FaceId, Mesh};
-use crate::surface::{Deviation, DeviationSample, LimitSurface, Sampling, deviation_samples};
+use crate::surface::{Deviation, DeviationSample, FreezeError, LimitSurface, Sampling, deviation_samples};
 use glam::DVec3;
 
 /// The surface as it was around a feature, for the report.
@@ -27,12 +28,12 @@ impl Reference {
         footprint: Vec<FaceId>,
         sampling: Sampling,
         active_rings: usize,
-    ) -> Self {
+    ) -> Result<Self, OutOfMemory> {
         // Rules change the faces round the crossed ones; feet may lie beside the affected faces.
         let mut faces = affected_faces(mesh, &mesh.grow_faces(crossed), active_rings);
         faces = mesh.grow_faces(&faces);
-        let surface = LimitSurface::around(mesh, &faces);
-        Self { surface, footprint, size: mesh.size(), sampling, active_rings }
+        let surface = LimitSurface::prepared(mesh, &faces)?;
+        Ok(Self { surface, footprint, size: mesh.size(), sampling, active_rings })
     }
 
     pub(super) fn size(&self) -> f64 {
@@ -45,10 +46,10 @@ impl Reference {
         mesh: &Mesh,
         changed: &[FaceId],
         job: &Job,
-    ) -> Result<Difference, Cancelled> {
+    ) -> Result<Difference, FreezeError> {
         let affected = affected_faces(mesh, changed, self.active_rings);
         // Feet of the frozen surface's samples may lie one face further.
-        let now = LimitSurface::around(mesh, &mesh.grow_faces(&affected));
+        let now = LimitSurface::prepared(mesh, &mesh.grow_faces(&affected))?;
         let in_footprint = |f: FaceId| self.footprint.binary_search(&mesh.original_face(f)).is_ok();
         let was_affected = {
             let mut faces: Vec<FaceId> = affected.iter().map(|&f| mesh.original_face(f)).collect();
@@ -60,12 +61,16 @@ impl Reference {
         job.step("deviation", 0.0)?;
         let mut samples = deviation_samples(&now, is_affected, &self.surface, self.sampling, job)?;
         let mut outside: Vec<DeviationSample> =
-            samples.iter().filter(|s| !in_footprint(s.face)).copied().collect();
+            memory::collected(0, samples.iter().filter(|s| !in_footprint(s.face)).copied())?;
         job.step("deviation", 0.5)?;
         let back = deviation_samples(&self.surface, was_affected, &now, self.sampling, job)?;
-        outside.extend(back.iter().filter(|s| self.footprint.binary_search(&s.face).is_err()));
+        for sample in back.iter().filter(|s| self.footprint.binary_search(&s.face).is_err()) {
+            memory::reserve(&mut outside, 1)?;
+            outside.push(*sample);
+        }
+        memory::reserve(&mut samples, back.len())?;
         samples.extend(back);
-        Ok(Difference { total: Deviation::of(&samples), outside: Deviation::of(&outside) })
+        Ok(Difference { total: Deviation::of(&samples)?, outside: Deviation::of(&outside)? })
     }
 }
 
@@ -77,7 +82,7 @@ pub(super) struct Walls {
 impl Walls {
     /// Faces of the crossed components whose control points come as near as `depth` to the box around the crossed
     /// faces. Other components that touch are no walls of this body.
-    pub(super) fn around(mesh: &Mesh, crossed: &[FaceId], depth: f64) -> Self {
+    pub(super) fn around(mesh: &Mesh, crossed: &[FaceId], depth: f64) -> Result<Self, OutOfMemory> {
         let corners = || crossed.iter().flat_map(|&f| mesh.face_vertices(f)).map(|v| mesh.position(v));
         let (low, high) = corners()
             .fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), p| (low.min(p), high.max(p)));
@@ -91,7 +96,7 @@ impl Walls {
                 face_low.cmple(high + depth).all() && face_high.cmpge(low - depth).all()
             })
             .collect();
-        Self { surface: LimitSurface::around(mesh, &near) }
+        Ok(Self { surface: LimitSurface::prepared(mesh, &near)? })
     }
 
     /// The worst place where the feature goes deeper than the wall behind it is thick.

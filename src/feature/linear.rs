@@ -65,6 +65,8 @@ pub(super) struct Pass {
     pub(super) folds: Vec<u32>,
     /// Positions of the displaced vertices before displacement.
     pub(super) flat: Vec<(VertexId, DVec3)>,
+    /// Positions of the vertices that the fit may move, before it.
+    pub(super) unfitted: Vec<(VertexId, DVec3)>,
 }
 
 impl Run<'_> {
@@ -81,9 +83,10 @@ impl Run<'_> {
         let sampling = Sampling { per_side: self.options.samples, threads: self.options.threads };
         let deepest = self.deepest();
         let active_rings = self.options.method.active_rings();
-        let reference =
-            measured.then(|| deviation::Reference::freeze(mesh, &crossed, footprint, sampling, active_rings));
-        let walls = measured.then(|| deviation::Walls::around(mesh, &crossed, deepest));
+        let reference = measured
+            .then(|| deviation::Reference::freeze(mesh, &crossed, footprint, sampling, active_rings))
+            .transpose()?;
+        let walls = measured.then(|| deviation::Walls::around(mesh, &crossed, deepest)).transpose()?;
         let mut target = Target::freeze(mesh, &region, job)?;
         self.clock.lap("freeze");
 
@@ -197,6 +200,7 @@ impl Run<'_> {
 
         job.step("fit", 0.3)?;
         let active = optimise::active_set(mesh, &changed, self.options.method);
+        let unfitted = active.iter().map(|&v| (v, mesh.position(v))).collect();
         let fit = optimise::fit(mesh, &active, target, self.options.method, job)?;
         self.clock.lap("fit");
 
@@ -211,6 +215,7 @@ impl Run<'_> {
             reached: Vec::new(),
             folds: Vec::new(),
             flat: Vec::new(),
+            unfitted,
         };
         if !self.features.is_empty() {
             let asked = Asked {

@@ -167,6 +167,8 @@ pub struct Report {
     pub features: Vec<FeatureReport>,
     /// Corrections of width and depth after a first measurement.
     pub corrections: u32,
+    /// Deviation before the fit and the displacement; `None` unless asked for.
+    pub inserted: Option<Difference>,
     /// Deviation after the fit, before displacement; `None` unless asked for.
     pub fitted: Option<Difference>,
     /// Deviation of the result; `None` unless asked for.

@@ -75,7 +75,12 @@ impl fmt::Display for Report {
         if !self.fit.missed.is_empty() {
             writeln!(f, "fit: {} vertices found no surface to fit to", self.fit.missed.len())?;
         }
-        for (name, difference) in [("before displacement", &self.fitted), ("result", &self.displaced)] {
+        let measured = [
+            ("before the fit", &self.inserted),
+            ("before displacement", &self.fitted),
+            ("result", &self.displaced),
+        ];
+        for (name, difference) in measured {
             if let Some(d) = difference {
                 writeln!(
                     f,

@@ -17,6 +17,13 @@ use std::collections::BTreeMap;
 /// Dimensions that miss the asked one by more than this fraction are counted in the report.
 const NOTICEABLE: f64 = 0.03;
 
+/// Puts vertices elsewhere; where they were.
+fn exchange(mesh: &mut Mesh, places: &[(VertexId, DVec3)]) -> Vec<(VertexId, DVec3)> {
+    let before = places.iter().map(|&(v, _)| (v, mesh.position(v))).collect();
+    places.iter().for_each(|&(v, position)| mesh.set_position(v, position));
+    before
+}
+
 impl Run<'_> {
     pub(super) fn report(
         &mut self,
@@ -32,18 +39,21 @@ impl Run<'_> {
         if self.options.strict && !leftovers.is_empty() {
             return Err(FeatureError::Unresolved { leftovers });
         }
-        let mut displaced = None;
-        let mut fitted = None;
+        let [mut inserted, mut fitted, mut displaced] = [None, None, None];
         if let Some(reference) = reference {
-            let raised: Vec<DVec3> = pass.flat.iter().map(|&(v, _)| mesh.position(v)).collect();
-            let is_raised = pass.flat.iter().zip(&raised).any(|((_, flat), raised)| flat != raised);
+            let difference = |mesh: &Mesh| reference.difference(mesh, &pass.changed, job);
+            let raised = exchange(mesh, &pass.flat);
+            let is_raised = pass.flat != raised;
+            let flat = difference(mesh)?;
+            // The surface before the fit once more, for comparison.
+            let moved = exchange(mesh, &pass.unfitted);
+            inserted = Some(if moved == pass.unfitted { flat.clone() } else { difference(mesh)? });
+            fitted = Some(flat);
+            exchange(mesh, &moved);
+            exchange(mesh, &raised);
             if is_raised {
-                displaced = Some(reference.difference(mesh, &pass.changed, job)?);
+                displaced = Some(difference(mesh)?);
             }
-            // The surface before displacement once more, for comparison.
-            pass.flat.iter().for_each(|&(v, position)| mesh.set_position(v, position));
-            fitted = Some(reference.difference(mesh, &pass.changed, job)?);
-            pass.flat.iter().zip(raised).for_each(|(&(v, _), position)| mesh.set_position(v, position));
         }
         let mut warnings = Vec::new();
         if !pass.folds.is_empty() {
@@ -79,6 +89,7 @@ impl Run<'_> {
             features: self.features(mesh, &pass),
             fit: pass.fit,
             corrections,
+            inserted,
             fitted,
             displaced,
             size: reference.map(|reference| reference.size()),

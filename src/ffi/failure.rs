@@ -146,7 +146,13 @@ impl From<ImportError> for Failure {
 
 impl From<ExportError> for Failure {
     fn from(error: ExportError) -> Self {
-        Self::new(WELT_ERROR_FILE, error.to_string())
+        let code = match error {
+            ExportError::Memory { .. } => WELT_ERROR_MEMORY,
+            ExportError::FolderMissing { .. }
+            | ExportError::UnknownFormat { .. }
+            | ExportError::Unwritable { .. } => WELT_ERROR_FILE,
+        };
+        Self::new(code, error.to_string())
     }
 }
 

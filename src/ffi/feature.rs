@@ -1,6 +1,6 @@
 //! Features: the whole job in one call, and its stages one by one.
 
-use super::arguments::{self, Buffer, Output};
+use super::arguments::{self, Output};
 use super::boundary::boundary;
 use super::error::WeltError;
 use super::failure::{Failure, Place};
@@ -16,7 +16,7 @@ use crate::job::Job;
 use crate::mark::parity;
 use crate::mesh::{MOST_COORDINATE, VertexId};
 use crate::optimise::Method;
-use crate::surface::{SAMPLES, Sampling};
+use crate::surface::SAMPLES;
 use std::collections::BTreeSet;
 use std::ffi::c_char;
 use std::time::Duration;
@@ -345,49 +345,6 @@ pub unsafe extern "C" fn welt_mesh_displace(
                 ..Failure::argument(format!("{} vertices have no normal to rise along", left_out.len()))
             })
         })
-    };
-    // SAFETY: the header asks for NULL or a place for an error.
-    unsafe { boundary(error, body) }
-}
-
-/// Measures how far the limit surfaces of two control meshes are apart, both ways.
-///
-/// first, second: must not be NULL.
-/// samples: samples per side of each face, 1 to 64; 8 is usual.
-/// values: receives the largest distance, the root mean square and the distance that 95 % of the area do not exceed, in
-/// model units: 3 doubles.
-/// job: may be NULL.
-///
-/// Fails with WELT_ERROR_ARGUMENT and WELT_ERROR_CANCELLED. Since: 0.1.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn welt_mesh_deviation(
-    first: *const WeltMesh,
-    second: *const WeltMesh,
-    samples: u32,
-    values: *mut f64,
-    job: *const WeltJob,
-    error: *mut *mut WeltError,
-) -> i32 {
-    let body = || {
-        // SAFETY: the header asks for living meshes, a job or NULL, and room for three doubles.
-        let (first, second, job, values) = unsafe {
-            (
-                arguments::handle(first, "first")?.read()?,
-                arguments::handle(second, "second")?.read()?,
-                arguments::optional(job, "job")?,
-                Buffer::new(values, 3, 3, "values")?,
-            )
-        };
-        if !(1..=64).contains(&samples) {
-            return Err(Failure::argument(format!("samples is {samples}; it lies between 1 and 64")));
-        }
-        let idle = Job::new();
-        let job = job.map_or(&idle, |job| &job.job);
-        let found =
-            crate::surface::compare(first, second, Sampling { per_side: samples as usize, threads: 1 }, job)?
-                .both;
-        values.fill([found.max, found.rms, found.p95]);
-        Ok(())
     };
     // SAFETY: the header asks for NULL or a place for an error.
     unsafe { boundary(error, body) }

@@ -182,7 +182,7 @@ pub unsafe extern "C" fn welt_mesh_import_memory(
 /// path: UTF-8.
 /// path_length: in bytes, SIZE_MAX for a NUL-terminated path.
 ///
-/// Fails with WELT_ERROR_FILE. Since: 0.1.
+/// Fails with WELT_ERROR_FILE and WELT_ERROR_MEMORY. Since: 0.1.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn welt_mesh_export_file(
     mesh: *const WeltMesh,

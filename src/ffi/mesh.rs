@@ -122,7 +122,7 @@ pub unsafe extern "C" fn welt_mesh_free(mesh: *mut WeltMesh) {
 /// mesh: must not be NULL.
 /// copy: receives the handle; free it with welt_mesh_free.
 ///
-/// Selections that were made on the mesh serve the copy too. Since: 0.1.
+/// Selections that were made on the mesh serve the copy too. Fails with WELT_ERROR_MEMORY. Since: 0.1.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn welt_mesh_copy(
     mesh: *const WeltMesh,
@@ -134,7 +134,7 @@ pub unsafe extern "C" fn welt_mesh_copy(
         let output = unsafe { Output::new(copy, "copy") }?;
         // SAFETY: the header asks for a living mesh.
         let mesh = unsafe { mesh_of(mesh) }?;
-        output.handle(WeltMesh::new(mesh.clone()));
+        output.handle(WeltMesh::new(mesh.try_clone()?));
         Ok(())
     };
     // SAFETY: the header asks for NULL or a place for an error.

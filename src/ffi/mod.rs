@@ -9,6 +9,7 @@
 
 mod arguments;
 mod boundary;
+mod deviation;
 mod error;
 mod evaluate;
 mod failure;
@@ -36,6 +37,7 @@ mod surface;
 mod tests;
 mod version;
 
+pub use deviation::*;
 pub use error::*;
 pub use evaluate::*;
 #[cfg(feature = "fault-injection")]

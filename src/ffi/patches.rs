@@ -67,7 +67,7 @@ pub struct WeltPatch {
     /// Which side of that patch; WELT_NONE at the border.
     pub neighbour_sides: [u32; 4],
     /// Per corner, at which side of the same number begins, not 0 where an extraordinary vertex lies there: in the last
-    /// two spans beside it the patch is an approximation. Everywhere else it is the limit surface itself.
+    /// three spans beside it the patch is an approximation. Everywhere else it is the limit surface itself.
     pub irregular: [u32; 4],
     /// Greatest distance to the limit surface that was found; 0 where the patch is exact.
     pub deviation: f64,

@@ -9,6 +9,7 @@ use super::options;
 use super::status::WELT_ERROR_BUFFER;
 use super::surface::WeltSurface;
 use crate::fault;
+use crate::memory;
 use crate::mesh::FaceId;
 use crate::surface::{ClosestOptions, Foot, Hit, LimitSurface, Parameter};
 use crate::threads::in_ranges;
@@ -98,16 +99,25 @@ impl<'a> Batch<'a> {
     }
 
     /// The answers for all rows, in order. Nothing is written before they are complete.
-    fn answers<T: Send>(&self, query: impl Fn(&LimitSurface, usize, &[f64]) -> T + Sync) -> Vec<T> {
+    fn answers<T: Send>(
+        &self,
+        query: impl Fn(&LimitSurface, usize, &[f64]) -> T + Sync,
+    ) -> Result<Vec<T>, Failure> {
+        self.surface.prepare()?;
         let parts = in_ranges(self.count, self.options.threads as usize, 16, |range| {
+            let count = range.len();
             let rows = self.rows.range(range.clone()).zip(range);
             let answer = |(row, i)| {
                 fault::point("query");
                 query(self.surface, i, row)
             };
-            rows.map(answer).collect::<Vec<T>>()
+            memory::collected(count, rows.map(answer))
         });
-        parts.into_iter().flatten().collect()
+        let mut all = memory::room(self.count)?;
+        for part in parts {
+            all.extend(part?);
+        }
+        Ok(all)
     }
 }
 
@@ -162,7 +172,7 @@ pub unsafe extern "C" fn welt_surface_closest(
                 None => surface.closest(point, &wanted),
             };
             foot.map_or_else(nothing, Into::into)
-        });
+        })?;
         buffer.fill(results);
         Ok(())
     };
@@ -170,7 +180,9 @@ pub unsafe extern "C" fn welt_surface_closest(
     unsafe { boundary(error, body) }
 }
 
-/// Measures the distance of each of many points to a closed surface, negative inside.
+/// Measures the distance of each of many points to a closed surface, negative inside: where the winding number of the
+/// surface is positive. Parts that overlap count as one solid; what lies in a hollow, whose normals point inwards, is outside.
+/// The distance is that of the nearest point of the surface, also where this lies inside another part.
 ///
 /// surface: must not be NULL.
 /// points: x, y and z of each point.
@@ -202,7 +214,7 @@ pub unsafe extern "C" fn welt_surface_signed_distances(
             return Err(Failure::argument("the surface has a border, so that it has no inside"));
         }
         let results = batch
-            .answers(|surface, _, row| surface.solid_distance(DVec3::from_slice(row)).unwrap_or(f64::NAN));
+            .answers(|surface, _, row| surface.solid_distance(DVec3::from_slice(row)).unwrap_or(f64::NAN))?;
         for (i, distance) in results.iter().enumerate() {
             // SAFETY: there is one thread again.
             unsafe { buffer.write(i, std::slice::from_ref(distance)) };
@@ -252,7 +264,7 @@ pub unsafe extern "C" fn welt_surface_first_hits(
         let results = batch.answers(|surface, _, row| {
             let [origin, direction] = line(row);
             surface.first_line_hit(origin, direction, first, last).map_or_else(nothing, Into::into)
-        });
+        })?;
         buffer.fill(results);
         Ok(())
     };
@@ -300,7 +312,7 @@ pub unsafe extern "C" fn welt_surface_all_hits(
         let hits = batch.answers(|surface, _, row| {
             let [origin, direction] = line(row);
             surface.line_hits_between(origin, direction, first, last)
-        });
+        })?;
         let total = hits.iter().map(Vec::len).sum();
         if let Some(needed) = needed {
             needed.set(total);

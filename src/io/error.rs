@@ -142,4 +142,12 @@ pub enum ExportError {
         /// What the system said.
         source: io::Error,
     },
+    /// There is no memory to put the mesh in order for the file.
+    #[error("{file}: {source}")]
+    Memory {
+        /// The file.
+        file: String,
+        /// How much was asked for.
+        source: OutOfMemory,
+    },
 }

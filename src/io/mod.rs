@@ -197,6 +197,10 @@ pub fn read(path: &Path, options: &ImportOptions) -> Result<Source, ImportError>
     let Some(format) = Format::of(path) else { return Err(ImportError::UnknownFormat { file }) };
     match std::fs::read(path) {
         Ok(bytes) => read_bytes(&file, format, &bytes, options),
+        Err(error) if error.kind() == std::io::ErrorKind::OutOfMemory => {
+            let bytes = std::fs::metadata(path).map_or(0, |metadata| metadata.len());
+            Err(ImportError::Memory { file, source: OutOfMemory { bytes } })
+        }
         Err(source) => Err(ImportError::Unreadable { file, source }),
     }
 }
@@ -232,7 +236,9 @@ pub fn export(path: &Path, mesh: &Mesh) -> Result<(), ExportError> {
     let Some(format) = Format::of(path) else {
         return Err(ExportError::UnknownFormat { file: path.display().to_string() });
     };
-    let polygons = mesh.to_polygons();
+    let polygons = mesh
+        .try_to_polygons()
+        .map_err(|source| ExportError::Memory { file: path.display().to_string(), source })?;
     save(path, |out| match format {
         Format::Obj => obj::write(&polygons, out),
         Format::Ply => ply::write(&polygons, &ply::Options::default(), out),

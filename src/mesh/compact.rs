@@ -2,6 +2,7 @@
 
 use super::ids::{DEAD, FaceId, HalfEdgeId, NONE, Node, VertexId};
 use super::{Mesh, Polygons};
+use crate::memory::{self, OutOfMemory};
 
 /// Old id -> new id per kind of element; `None` for what was removed.
 #[derive(Clone, PartialEq, Eq, Debug)]
@@ -58,17 +59,11 @@ impl Renumbering {
 }
 
 /// New numbers for what is alive, in the old order.
-fn number(alive: impl Iterator<Item = bool>) -> Vec<u32> {
-    let mut count = 0;
-    alive
-        .map(|alive| {
-            if !alive {
-                return NONE;
-            }
-            count += 1;
-            count - 1
-        })
-        .collect()
+fn numbers(alive: impl Iterator<Item = bool>) -> impl Iterator<Item = u32> {
+    alive.scan(0, |count, alive| {
+        *count += u32::from(alive);
+        Some(if alive { *count - 1 } else { NONE })
+    })
 }
 
 impl Mesh {
@@ -86,10 +81,10 @@ impl Mesh {
             return Renumbering::default();
         }
         let map = Renumbering {
-            vertices: number(self.vertices.iter().map(|&h| h != DEAD)),
-            edges: number(self.half_edges.chunks_exact(2).map(|pair| pair[0].source != DEAD)),
-            faces: number(self.faces.iter().map(|&h| h != DEAD)),
-            loops: number(self.loops.iter().map(|&h| h != DEAD)),
+            vertices: numbers(self.vertices.iter().map(|&h| h != DEAD)).collect(),
+            edges: numbers(self.half_edges.chunks_exact(2).map(|pair| pair[0].source != DEAD)).collect(),
+            faces: numbers(self.faces.iter().map(|&h| h != DEAD)).collect(),
+            loops: numbers(self.loops.iter().map(|&h| h != DEAD)).collect(),
             identity: false,
         };
         let half_edge = |id: u32| map.half_edge(HalfEdgeId(id)).map_or(NONE, |h| h.0);
@@ -132,11 +127,26 @@ impl Mesh {
     /// The first vertex of each face is that of the half-edge the face names. A face keeps its texture coordinates
     /// only when all its corners have one.
     pub fn to_polygons(&self) -> Polygons {
-        let vertex_numbers = number(self.vertices.iter().map(|&h| h != DEAD));
+        self.try_to_polygons().unwrap_or_else(|error| memory::give_up(error))
+    }
+
+    /// [`to_polygons`](Self::to_polygons), where there may be no memory for them.
+    ///
+    /// # Errors
+    /// [`OutOfMemory`] where there is none for one of the large lists.
+    pub fn try_to_polygons(&self) -> Result<Polygons, OutOfMemory> {
+        let alive = self.vertices.iter().map(|&h| h != DEAD);
+        let vertex_numbers = memory::collected(self.vertices.len(), numbers(alive))?;
+        // With those of the boundary, which are few.
+        let corners = self.half_edges.len();
         let mut polygons = Polygons {
-            positions: self.vertices().map(|v| self.position(v)).collect(),
+            positions: memory::collected(self.vertices.len(), self.vertices().map(|v| self.position(v)))?,
+            face_sizes: memory::room(self.faces.len())?,
+            face_vertices: memory::room(corners)?,
+            face_sets: memory::room(self.face_sets.len())?,
+            face_texcoords: memory::room(if self.has_texcoords() { corners } else { 0 })?,
             sets: self.sets.clone(),
-            texcoords: self.texcoords.clone(),
+            texcoords: memory::copied(&self.texcoords)?,
             material_libraries: self.material_libraries.clone(),
             subdivision: self.subdivision,
             ..Polygons::default()
@@ -167,7 +177,7 @@ impl Mesh {
         for v in self.vertices().filter(|&v| self.vertex_sharpness(v) > 0.0) {
             polygons.corners.push((vertex_numbers[v.index()], self.vertex_sharpness(v)));
         }
-        polygons
+        Ok(polygons)
     }
 }
 

@@ -35,6 +35,7 @@ pub use tile::{Corner, TileError};
 pub use validate::Violation;
 pub use value::Value;
 
+use crate::memory::{self, OutOfMemory};
 use attributes::Attributes;
 use glam::{DVec2, DVec3};
 use ids::{DEAD, NONE};
@@ -99,6 +100,35 @@ pub fn is_place(place: DVec3) -> bool {
 }
 
 impl Mesh {
+    /// A copy, as `clone` makes it.
+    ///
+    /// # Errors
+    /// [`OutOfMemory`] where there is no memory for one of the large lists.
+    pub fn try_clone(&self) -> Result<Self, OutOfMemory> {
+        Ok(Self {
+            half_edges: memory::copied(&self.half_edges)?,
+            vertices: memory::copied(&self.vertices)?,
+            positions: memory::copied(&self.positions)?,
+            faces: memory::copied(&self.faces)?,
+            loops: memory::copied(&self.loops)?,
+            first_new_vertex: self.first_new_vertex,
+            first_new_face: self.first_new_face,
+            face_parents: memory::copied(&self.face_parents)?,
+            holes: self.holes,
+            attributes: self.attributes.clone(),
+            edge_sharpness: self.edge_sharpness.clone(),
+            vertex_sharpness: self.vertex_sharpness.clone(),
+            subdivision: self.subdivision,
+            hole_faces: self.hole_faces.clone(),
+            texcoords: memory::copied(&self.texcoords)?,
+            corner_texcoords: memory::copied(&self.corner_texcoords)?,
+            sets: self.sets.clone(),
+            face_sets: memory::copied(&self.face_sets)?,
+            material_libraries: self.material_libraries.clone(),
+            log: self.log.clone(),
+        })
+    }
+
     /// Number of vertex ids in use, removed ones included: ids are below it.
     pub fn vertex_bound(&self) -> usize {
         self.vertices.len()

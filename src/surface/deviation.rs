@@ -4,8 +4,9 @@
 //! whose normal is compatible (angle below 90 degrees), signed by that point's normal. Normal and mean curvature are
 //! compared with those at that point. Means weigh samples by area.
 
-use super::{Foot, LimitSurface};
+use super::{Foot, FreezeError, LimitSurface};
 use crate::job::{Cancelled, Job};
+use crate::memory::{self, OutOfMemory};
 use crate::mesh::{FaceId, Mesh};
 use crate::threads::in_ranges;
 use glam::DVec3;
@@ -65,9 +66,14 @@ pub struct Deviation {
 
 impl Deviation {
     /// The summary of `samples`.
-    pub fn of(samples: &[DeviationSample]) -> Self {
-        let mut sorted: Vec<(f64, f64)> = samples.iter().map(|s| (s.signed.abs(), s.area)).collect();
-        sorted.sort_by(|a, b| a.0.total_cmp(&b.0));
+    ///
+    /// # Errors
+    /// [`OutOfMemory`].
+    pub fn of(samples: &[DeviationSample]) -> Result<Self, OutOfMemory> {
+        let parts = samples.iter().enumerate().map(|(i, s)| (s.signed.abs(), s.area, i));
+        let mut sorted = memory::collected(samples.len(), parts)?;
+        // Equal distances in the order of the samples, for which a stable sort would need memory.
+        sorted.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.2.cmp(&b.2)));
         let area: f64 = sorted.iter().map(|entry| entry.1).sum();
         let square: f64 = sorted.iter().map(|entry| entry.1 * entry.0 * entry.0).sum();
         let mut covered = 0.0;
@@ -80,7 +86,7 @@ impl Deviation {
         let (bend_square, bend_area) =
             bends().fold((0.0, 0.0), |(square, sum), (bend, area)| (square + area * bend * bend, sum + area));
         let root_mean = |square: f64, area: f64| if area > 0.0 { (square / area).sqrt() } else { 0.0 };
-        Self {
+        Ok(Self {
             max: at.map_or(0.0, |sample| sample.signed.abs()),
             rms: root_mean(square, area),
             p95: p95.map_or(0.0, |entry| entry.0),
@@ -89,7 +95,7 @@ impl Deviation {
             curvature_rms: root_mean(bend_square, bend_area),
             samples: samples.len(),
             at: at.copied(),
-        }
+        })
     }
 }
 
@@ -113,21 +119,28 @@ impl Default for Sampling {
 /// answer (it is empty) are left out.
 ///
 /// # Errors
-/// [`Cancelled`].
+/// [`FreezeError`].
 pub fn deviation_samples(
     from: &LimitSurface,
     choose: impl Fn(FaceId) -> bool,
     to: &LimitSurface,
     sampling: Sampling,
     job: &Job,
-) -> Result<Vec<DeviationSample>, Cancelled> {
+) -> Result<Vec<DeviationSample>, FreezeError> {
+    to.prepare()?;
     let faces: Vec<FaceId> = from.faces().filter(|&face| choose(face)).collect();
     let work = |range: std::ops::Range<usize>| {
         sample_faces(from, faces.get(range).unwrap_or_default(), to, sampling.per_side, job)
     };
     let mut samples = Vec::new();
     for part in in_ranges(faces.len(), sampling.threads, 1, work) {
-        samples.append(&mut part?);
+        let mut part = part?;
+        if samples.is_empty() {
+            samples = part;
+            continue;
+        }
+        memory::reserve(&mut samples, part.len())?;
+        samples.append(&mut part);
     }
     Ok(samples)
 }
@@ -139,15 +152,16 @@ fn sample_faces(
     to: &LimitSurface,
     per_side: usize,
     job: &Job,
-) -> Result<Vec<DeviationSample>, Cancelled> {
+) -> Result<Vec<DeviationSample>, FreezeError> {
     let mut samples = Vec::new();
     for &face in faces {
         if job.is_cancelled() {
-            return Err(Cancelled);
+            return Err(Cancelled.into());
         }
         let patches = from.patch_count(face);
         let cells = if patches == 1 { per_side } else { per_side.div_ceil(2) }.max(1);
         let width = 1.0 / cells as f64;
+        memory::reserve(&mut samples, patches * cells * cells)?;
         for corner in 0..patches {
             for cell in 0..cells * cells {
                 let (u, v) = (((cell % cells) as f64 + 0.5) * width, ((cell / cells) as f64 + 0.5) * width);
@@ -204,17 +218,29 @@ pub struct Comparison {
 /// Compares the limit surfaces of two control meshes both ways.
 ///
 /// # Errors
-/// [`Cancelled`].
-pub fn compare(first: &Mesh, second: &Mesh, sampling: Sampling, job: &Job) -> Result<Comparison, Cancelled> {
+/// [`FreezeError`].
+pub fn compare(
+    first: &Mesh,
+    second: &Mesh,
+    sampling: Sampling,
+    job: &Job,
+) -> Result<Comparison, FreezeError> {
     const STAGE: &str = "deviation";
     job.step(STAGE, 0.0)?;
-    let (first, second) = (LimitSurface::new(first), LimitSurface::new(second));
+    let whole = |mesh: &Mesh| {
+        let faces = memory::collected(mesh.face_bound(), mesh.faces())?;
+        LimitSurface::prepared(mesh, &faces)
+    };
+    let (first, second) = (whole(first)?, whole(second)?);
     job.step(STAGE, 0.1)?;
     let mut samples = deviation_samples(&first, |_| true, &second, sampling, job)?;
-    let first_to_second = Deviation::of(&samples);
+    let first_to_second = Deviation::of(&samples)?;
     job.step(STAGE, 0.55)?;
     let back = deviation_samples(&second, |_| true, &first, sampling, job)?;
+    let second_to_first = Deviation::of(&back)?;
+    memory::reserve(&mut samples, back.len())?;
     samples.extend_from_slice(&back);
-    let (both, second_to_first) = (Deviation::of(&samples), Deviation::of(&back));
+    drop(back);
+    let both = Deviation::of(&samples)?;
     Ok(Comparison { both, first_to_second, second_to_first })
 }

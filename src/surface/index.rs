@@ -1,10 +1,13 @@
 //! What queries search: pieces with their boxes, in a tree. Made at the first query, for evaluation does without.
 
+use super::disc::Disc;
 use super::places::Entry;
 use super::tree::Tree;
 use super::{Bicubic, LimitSurface};
+use crate::memory::{self, OutOfMemory};
 use crate::subdivision::patch_corner::{Corner, Points};
 use glam::DVec3;
+use smallvec::SmallVec;
 
 /// Levels of pieces that are held beside an extraordinary vertex; deeper ones are made when a query gets there.
 const LEVELS: u32 = 4;
@@ -71,6 +74,8 @@ pub(super) struct Rest {
 #[derive(Clone, Default, Debug)]
 pub(super) struct Index {
     pub(super) tree: Tree,
+    /// Per node of the tree.
+    discs: Vec<Disc>,
     /// Per item of the tree below the rests, which are the bicubics of the surface and then `pieces`.
     domains: Vec<Domain>,
     /// Pieces beside extraordinary vertices.
@@ -97,10 +102,20 @@ impl Rest {
 }
 
 impl Index {
-    pub(super) fn new(surface: &LimitSurface) -> Self {
-        let mut index = Self { domains: vec![Domain::whole(0); surface.bicubics.len()], ..Self::default() };
-        let mut boxes: Vec<(DVec3, DVec3)> = surface.bicubics.iter().map(Bicubic::bounds).collect();
-        let mut rest_boxes = Vec::with_capacity(surface.corners.entries.len());
+    pub(super) fn new(surface: &LimitSurface) -> Result<Self, OutOfMemory> {
+        let (held, rests) = (surface.bicubics.len(), surface.corners.entries.len());
+        let pieces = 3 * LEVELS as usize * rests;
+        let mut index = Self {
+            domains: memory::room(held + pieces)?,
+            pieces: memory::room(pieces)?,
+            rests: memory::room(rests)?,
+            ..Self::default()
+        };
+        index.domains.resize(held, Domain::whole(0));
+        let mut boxes = memory::room(held + pieces + rests)?;
+        boxes.extend(surface.bicubics.iter().map(Bicubic::bounds));
+        let mut rest_boxes: Vec<(DVec3, DVec3)> = memory::room(rests)?;
+        let mut rest_discs: Vec<Disc> = memory::room(rests)?;
         let mut scratch = Points::new();
         let mut open: Vec<(Entry, Domain)> = Vec::new();
         for (&entry, patch) in surface.patches.iter().zip(0..) {
@@ -128,14 +143,32 @@ impl Index {
                             domain = domain.inner();
                         }
                         rest_boxes.push(corner.bounds());
+                        let points: SmallVec<[DVec3; 16]> =
+                            corner.control_points().map(|p| p + corner.origin).collect();
+                        rest_discs.push(Disc::around(points.iter().copied(), normal));
                         index.rests.push(Rest { corner: number, domain, normal });
                     }
                 }
             }
         }
         boxes.append(&mut rest_boxes);
-        index.tree = Tree::new(&boxes);
-        index
+        index.tree = Tree::new(&boxes)?;
+        let disc = |item: u32| match index.item(surface, item) {
+            Item::Piece(bicubic, _) => {
+                let p = &bicubic.points;
+                let normal = (p[3][3] - p[0][0]).cross(p[3][0] - p[0][3]);
+                Disc::around(p.as_flattened().iter().copied(), normal)
+            }
+            Item::Rest(_) => rest_discs[item as usize - index.domains.len()],
+        };
+        index.discs = index.tree.gather(disc, |a, b| a.join(&b))?;
+        Ok(index)
+    }
+
+    /// No point of what the node holds is closer to `point`.
+    pub(super) fn at_least(&self, node: u32, point: DVec3, tolerance: f64) -> f64 {
+        // What is lost to rounding, in proportion to the sizes and to the distance.
+        (1.0 - 1e-14) * self.discs[node as usize].distance(point) - tolerance
     }
 
     pub(super) fn item<'a>(&'a self, surface: &'a LimitSurface, item: u32) -> Item<'a> {

@@ -14,19 +14,18 @@
 
 mod batch;
 mod closest;
-mod convexity;
 mod deviation;
+mod disc;
 mod fans;
 mod freeze;
 mod index;
 mod kernel;
 mod line;
-mod line_piece;
-mod minimise;
 mod near;
 mod patches;
 mod places;
 mod quality;
+mod signed;
 mod tree;
 mod valence;
 
@@ -46,7 +45,6 @@ use crate::subdivision::patch::{Evaluated, Patch};
 use crate::subdivision::patch_bicubic::{Bicubic, Jet};
 use crate::subdivision::patch_corner::Corner;
 use fans::Corners;
-use glam::DVec3;
 use index::Index;
 use kernel::Plain;
 use places::{Entry, FaceTable, Located, PatchPlace};
@@ -71,13 +69,13 @@ pub struct LimitSurface {
     tolerance: f64,
 }
 
-/// Why a surface was not frozen.
+/// Why a surface was not frozen, or not measured.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, thiserror::Error)]
 pub enum FreezeError {
     /// The caller cancelled.
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
-    /// There is no memory for the surface.
+    /// There is no memory for the surface, or for what was measured.
     #[error(transparent)]
     Memory(#[from] OutOfMemory),
 }
@@ -182,53 +180,25 @@ impl LimitSurface {
 
     /// What queries search.
     fn index(&self) -> &Index {
-        self.index.get_or_init(|| Index::new(self))
+        self.index.get_or_init(|| Index::new(self).unwrap_or_else(|error| memory::give_up(error)))
     }
 
-    /// The distance of `point` to the surface, positive on the side of its normals: that to its
-    /// [`compatible_foot`](Self::compatible_foot). `None` when the surface is empty or a coordinate is not finite.
-    pub fn signed_distance(&self, point: DVec3, normal: DVec3) -> Option<f64> {
-        let foot = self.compatible_foot(point, normal)?;
-        Some(foot.distance.copysign((point - foot.position).dot(foot.normal)))
-    }
-
-    /// The distance of `point` to a closed surface, negative inside. `None` where the surface has a border and where
-    /// [`closest`](Self::closest) gives none.
+    /// Makes what queries search, which the first of them does otherwise: there, no memory ends the program.
     ///
-    /// Where the closest point lies on a crease, so that its normal does not tell the side, a line from the point to
-    /// the middle of a patch beside it does: the side is that of the first crossing.
-    pub fn solid_distance(&self, point: DVec3) -> Option<f64> {
-        if !self.closed {
-            return None;
+    /// # Errors
+    /// [`OutOfMemory`]; the surface is as it was.
+    pub fn prepare(&self) -> Result<(), OutOfMemory> {
+        if self.index.get().is_none() {
+            // Another thread may have been first; what it made is the same.
+            let _ = self.index.set(Index::new(self)?);
         }
-        let foot = self.closest(point, &ClosestOptions::default())?;
-        let height = (point - foot.position).dot(foot.normal);
-        if height.abs() >= (1.0 - 1e-9) * foot.distance || foot.distance <= self.tolerance {
-            return Some(foot.distance.copysign(height));
-        }
-        let side = [(0.5, 0.5), (0.3, 0.6), (0.7, 0.2), (0.2, 0.9), (0.9, 0.4)].iter().find_map(|&(u, v)| {
-            let target = self.evaluate(foot.face, foot.corner, u, v)?.position;
-            let way = target - point;
-            let hit = self.first_line_hit(point, way, 0.0, f64::INFINITY)?;
-            let slope = hit.normal.dot(way);
-            (slope.abs() > 0.01 * way.length()).then_some(-slope)
-        });
-        Some(foot.distance.copysign(side.unwrap_or(height)))
+        Ok(())
     }
 
-    /// The point of the surface that belongs to `point`, which lies on another surface with `normal`.
-    ///
-    /// The closest point, unless its normal is opposite to `normal`: then a foot whose normal has an angle below 90
-    /// degrees counts, so that a thin wall does not snap to its other side, if there is one at most ten times as far
-    /// away (else the point belongs to a small fold). `None` when the surface is empty or a coordinate is not finite.
-    pub fn compatible_foot(&self, point: DVec3, normal: DVec3) -> Option<Foot> {
-        const FARTHER: f64 = 10.0;
-        let foot = self.closest(point, &ClosestOptions::default())?;
-        if foot.normal.dot(normal) > 0.0 {
-            return Some(foot);
-        }
-        let facing = Some(Facing { normal, min_cosine: 0.0 });
-        let radius = FARTHER * foot.distance;
-        Some(self.closest(point, &ClosestOptions { radius, facing }).unwrap_or(foot))
+    /// [`around`](Self::around), ready for queries.
+    pub(crate) fn prepared(mesh: &Mesh, faces: &[FaceId]) -> Result<Self, OutOfMemory> {
+        let surface = freeze::freeze(mesh, &existing(mesh, faces)?, unwatched)?;
+        surface.prepare()?;
+        Ok(surface)
     }
 }

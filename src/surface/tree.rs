@@ -1,9 +1,10 @@
 //! A bounding volume tree over boxes: median split, flat array, no recursion.
 
+use crate::memory::{self, OutOfMemory};
 use glam::DVec3;
 
-/// Most boxes in a leaf.
-const LEAF: usize = 2;
+/// Most boxes in a leaf: the bounds of a node cost less than a look at a piece.
+const LEAF: usize = 1;
 
 /// An inner node's children are `index + 1` and `second`; a leaf (`count > 0`) holds `items[second..second + count]`.
 #[derive(Clone, Copy, Debug)]
@@ -31,9 +32,9 @@ pub(super) enum Content<'a> {
 
 impl Tree {
     /// The tree over `boxes`, each (low, high).
-    pub(super) fn new(boxes: &[(DVec3, DVec3)]) -> Self {
-        let mut items: Vec<u32> = (0..boxes.len() as u32).collect();
-        let mut nodes: Vec<Node> = Vec::with_capacity(boxes.len());
+    pub(super) fn new(boxes: &[(DVec3, DVec3)]) -> Result<Self, OutOfMemory> {
+        let mut items: Vec<u32> = memory::collected(boxes.len(), 0..boxes.len() as u32)?;
+        let mut nodes: Vec<Node> = memory::room(2 * boxes.len())?;
         // Ranges still to do, each with the inner node whose second child it is.
         let mut open: Vec<(usize, usize, Option<usize>)> = Vec::new();
         if !items.is_empty() {
@@ -73,7 +74,7 @@ impl Tree {
             open.push((start + half, end, Some(index)));
             open.push((start, start + half, None));
         }
-        Self { nodes, items }
+        Ok(Self { nodes, items })
     }
 
     /// The box round everything; `None` for an empty tree.
@@ -93,5 +94,26 @@ impl Tree {
         } else {
             Content::Children([index + 1, node.second])
         }
+    }
+
+    /// Something for each node: that of its items (`leaf`) or of its children, joined.
+    ///
+    /// # Errors
+    /// [`OutOfMemory`].
+    pub(super) fn gather<T: Copy>(&self, leaf: impl Fn(u32) -> T, join: impl Fn(T, T) -> T) -> Result<Vec<T>, OutOfMemory> {
+        // From the last to the first, for children stand behind their parent.
+        let mut reversed: Vec<T> = memory::room(self.nodes.len())?;
+        let last = self.nodes.len().saturating_sub(1);
+        for index in (0..self.nodes.len()).rev() {
+            let joined = match self.content(index as u32) {
+                Content::Leaf(items) => items.iter().map(|&item| leaf(item)).reduce(&join),
+                Content::Children(children) => {
+                    children.iter().map(|&child| reversed[last - child as usize]).reduce(&join)
+                }
+            };
+            reversed.extend(joined);
+        }
+        reversed.reverse();
+        Ok(reversed)
     }
 }

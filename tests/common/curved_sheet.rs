@@ -226,5 +226,5 @@ pub fn measure(case: &Case, method: Method) -> (Deviation, f64) {
     let now = LimitSurface::new(&after);
     let near = |f: FaceId| case.away[f.index()] <= WITHIN;
     let samples = deviation_samples(&now, near, &target.surface, Sampling::default(), &Job::new());
-    (Deviation::of(&samples.expect("not cancelled")), time)
+    (Deviation::of(&samples.expect("not cancelled")).expect("memory"), time)
 }

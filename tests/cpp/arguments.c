@@ -314,8 +314,154 @@ static void numbers_that_are_none(int kind) {
     welt_mesh_free(mesh);
 }
 
+/* Each limit of a file, as large as the triangle and one less, or larger than all that is. */
+static void limits_of_files(void) {
+    const uint64_t needed[4] = {3, 1, 3, 1};
+    const char *const words[4] = {"vert", "face", "a face with more than", "vertex"};
+    welt_import_options options;
+    uint64_t *members[4];
+    size_t i;
+    members[0] = &options.max_vertices;
+    members[1] = &options.max_faces;
+    members[2] = &options.max_face_vertices;
+    members[3] = &options.max_vertex_faces;
+    for (i = 0; i < 4; ++i) {
+        uint64_t tried[4];
+        size_t k;
+        tried[0] = 0;
+        tried[1] = needed[i] - 1;
+        tried[2] = needed[i];
+        tried[3] = UINT64_MAX;
+        for (k = 0; k < 4; ++k) {
+            welt_mesh *mesh = NULL;
+            welt_error *error = NULL;
+            int32_t status;
+            check(welt_import_options_init(&options, sizeof options) == WELT_OK, "options");
+            *members[i] = tried[k];
+            status = welt_mesh_import_memory(NULL, 0, WELT_FORMAT_OBJ, (const uint8_t *)triangle, strlen(triangle), &options,
+                                             &mesh, NULL, &error);
+            if (k < 2) {
+                check(status != WELT_OK && !mesh, words[i]);
+                check(strstr(welt_error_message(error), words[i]) != NULL, welt_error_message(error));
+                check(strstr(welt_error_message(error), "raise the limit") != NULL, welt_error_message(error));
+            } else {
+                check(status == WELT_OK && mesh, words[i]);
+            }
+            welt_error_free(error);
+            welt_mesh_free(mesh);
+        }
+    }
+}
+
+/* A groove with these options on a sheet, and the message of the error; the size of the mesh afterwards is written. */
+static int32_t groove(const welt_feature_options *options, char *message, size_t *vertices) {
+    welt_mesh *mesh = sheet();
+    welt_selection *selection = NULL;
+    welt_error *error = NULL;
+    int32_t status;
+    check(welt_selection_create(mesh, "ring:1,2", NUL, &selection, NULL) == WELT_OK, "ring");
+    status = welt_feature_apply(mesh, selection, "groove", NUL, "width=0.2 depth=0.1", NUL, options, NULL, NULL, &error);
+    sprintf(message, "%.500s", welt_error_message(error));
+    *vertices = welt_mesh_vertex_count(mesh);
+    welt_error_free(error);
+    welt_selection_free(selection);
+    welt_mesh_free(mesh);
+    return status;
+}
+
+/* Each limit of the rules, too small and larger than all that is. */
+static void limits_of_rules(void) {
+    const char *const names[7] = {"depth", "applications", "steps", "changes", "growth", "elements", "seconds"};
+    const char *const words[7] = {"inside one another", "applications", "steps", "changes", "vertices, edges and faces",
+                                  "vertices, edges and faces", "more than 0 s"};
+    welt_feature_options options;
+    char message[512];
+    size_t vertices;
+    int i, large;
+    for (i = 0; i < 7; ++i) {
+        for (large = 0; large < 2; ++large) {
+            const uint64_t most = large ? UINT64_MAX : i == 4 || i == 5 ? 0 : i == 0 ? 0 : 1;
+            int32_t status;
+            check(welt_feature_options_init(&options, sizeof options) == WELT_OK, "options");
+            switch (i) {
+            case 0: options.max_script_depth = large ? UINT32_MAX : 0; break;
+            case 1: options.max_applications = most; break;
+            case 2: options.max_steps = most; break;
+            case 3: options.max_changes = most; break;
+            /* The two are added up. */
+            case 4: options.max_growth = large ? UINT64_MAX : 1; options.max_extra_elements = 0; break;
+            case 5: options.max_extra_elements = most; options.max_growth = 0; break;
+            default: options.max_seconds = large ? HUGE_VAL : 0.0;
+            }
+            status = groove(&options, message, &vertices);
+            if (large) {
+                check(status == WELT_OK && vertices == 28, names[i]);
+                continue;
+            }
+            check(status == WELT_ERROR_RULE && vertices == 16, names[i]);
+            check(strstr(message, words[i]) != NULL, message);
+            check(strstr(message, "raise the limit") != NULL, message);
+        }
+    }
+}
+
+/* Seconds that are no time are refused; times that no clock can count are none. */
+static void seconds(void) {
+    const double bad[3] = {-1.0, -1e-300, -HUGE_VAL}, good[4] = {-0.0, 1e300, 1.8e19, HUGE_VAL};
+    welt_feature_options options;
+    char message[512];
+    size_t vertices;
+    int i;
+    check(welt_feature_options_init(&options, sizeof options) == WELT_OK && options.max_seconds == 60.0, "the default");
+    options.max_seconds = -sqrt(-1.0);
+    check(groove(&options, message, &vertices) == WELT_ERROR_ARGUMENT && vertices == 16, "NaN seconds");
+    check(strstr(message, "max_seconds is NaN") != NULL, message);
+    for (i = 0; i < 3; ++i) {
+        options.max_seconds = bad[i];
+        check(groove(&options, message, &vertices) == WELT_ERROR_ARGUMENT && vertices == 16, "negative seconds");
+        check(strstr(message, "max_seconds is -") != NULL, message);
+    }
+    for (i = 1; i < 4; ++i) {
+        options.max_seconds = good[i];
+        check(groove(&options, message, &vertices) == WELT_OK && vertices == 28, "seconds without end");
+    }
+    options.max_seconds = good[0];
+    check(groove(&options, message, &vertices) == WELT_ERROR_RULE && vertices == 16, "no time at all");
+}
+
+/* A caller that was compiled before there were limits gets the defaults, whatever lies behind its struct. */
+static void limits_of_old_callers(void) {
+    const size_t features[3] = {20, 24, 56};
+    union {
+        welt_feature_options options;
+        unsigned char bytes[256];
+    } known;
+    union {
+        welt_import_options options;
+        unsigned char bytes[256];
+    } files;
+    char message[512];
+    size_t vertices, i;
+    welt_mesh *mesh = NULL;
+    for (i = 0; i < 3; ++i) {
+        memset(&known, 0, sizeof known);
+        check(welt_feature_options_init(&known.options, features[i]) == WELT_OK, "an old size");
+        check(groove(&known.options, message, &vertices) == WELT_OK && vertices == 28, "limits of 0 are not read");
+        memset(known.bytes + features[i], 0xff, sizeof known - features[i]);
+        check(groove(&known.options, message, &vertices) == WELT_OK && vertices == 28, "nor is NaN");
+    }
+    memset(&files, 0, sizeof files);
+    check(welt_import_options_init(&files.options, 16) == WELT_OK, "an old size");
+    check(import(&files.options, WELT_FORMAT_OBJ, &mesh) == WELT_OK, "limits of 0 are not read");
+    welt_mesh_free(mesh);
+}
+
 int main(void) {
     versions();
+    limits_of_files();
+    limits_of_rules();
+    seconds();
+    limits_of_old_callers();
     sizes("welt_import_options_init", initialise_import, use_import, 16, sizeof(welt_import_options));
     sizes("welt_feature_options_init", initialise_feature, use_feature, 20, sizeof(welt_feature_options));
     sizes("welt_batch_options_init", initialise_batch, use_batch, sizeof(welt_batch_options), sizeof(welt_batch_options));

@@ -256,6 +256,9 @@ void features() {
     welt::Mesh const flat = make_sheet();
     welt::Mesh::Deviation const deviation = mesh.deviation(flat, 4);
     that(std::abs(deviation.largest - 0.1) < 0.01 && deviation.root_mean_square < 0.1, "as deep as it was asked");
+    welt::Mesh::Comparison const compared = mesh.compare(flat, 4, 2);
+    that(compared.deviation.largest == deviation.largest && compared.degrees > 5 && compared.degrees < 90, "normals turn");
+    that(compared.curvature_largest >= compared.curvature_root_mean_square, "curvature changes");
 
     welt::Mesh other = make_sheet();
     other.mark(marks);

@@ -1,5 +1,6 @@
-// A panic or a cancellation at every place of every function, in the library with fault injection: the documented error,
-// what was being changed is as it was before or poisoned, and everything else can still be used.
+// A panic or a cancellation at the places of every function, in the library with fault injection: the documented error,
+// what was being changed is as it was before or poisoned, and everything else can still be used. Cancellations come at every
+// place, panics at the first hundred and then at every sixteenth part further; `faults all` takes every one.
 
 #include "check.hpp"
 #include "functions.hpp"
@@ -56,8 +57,14 @@ Reference reference(Function const& function) {
 bool tries_again(std::uint64_t n) { return n < 16 || n % 16 == 0; }
 
 // Places one by one, then in growing steps: what comes often, comes in loops. Few of them where a checker of memory watches.
-bool few = false;
-std::uint64_t next(std::uint64_t n) { return few ? 2 * n + n / 2 : n < 100 ? n + 1 : n + n / 16; }
+enum class Places { few, sample, all } places = Places::sample;
+std::uint64_t next(std::uint64_t n) {
+    switch (places) {
+    case Places::few: return 2 * n + n / 2;
+    case Places::sample: return n < 100 ? n + 1 : n + n / 16;
+    default: return n + 1;
+    }
+}
 
 // Each byte is as it was before, or as a call that succeeds writes it.
 bool written_in_part(std::string const& now, std::string const& before, std::string const& expected) {
@@ -126,11 +133,16 @@ bool panics(Function const& function, Reference const& expected, std::uint64_t n
 void a_panic_at_every_place() {
     for (Function const& function : functions()) {
         Reference const expected = reference(function);
-        for (std::uint64_t n = 1; panics(function, expected, n); n = next(n)) {}
+        std::uint64_t n = 1;
+        while (panics(function, expected, n)) n = next(n);
+        if (places == Places::all) {
+            std::printf("  %s: %ld places\n", function.name.c_str(), long(n - 1));
+            std::fflush(stdout);
+        }
     }
     std::printf("%d panics; meshes: %d poisoned, %d as before; buffers: %d written in part\n", outcomes["panics"],
                 outcomes["poisoned"], outcomes["as before"], outcomes["in part"]);
-    if (few) return;
+    if (places == Places::few) return;
     check::that(outcomes["poisoned"] > 50 && outcomes["as before"] > 5, "both outcomes occur");
     check::that(outcomes["in part"] > 0, "some calls write as they go");
     for (char const* stage : {"entry", "read", "build", "refine", "limit", "freeze", "evaluate", "query", "mark", "rules", "fit",
@@ -165,7 +177,7 @@ void a_cancellation_at_every_poll() {
         ++with_job;
         Reference const expected = reference(function);
         std::uint64_t n = 1;
-        for (;; n = few ? next(n) : n + 1) {
+        for (;; n = places == Places::few ? next(n) : n + 1) {
             std::string const what = function.name + ", poll " + std::to_string(n);
             World world;
             Strike const call = strike(function, world, cancel, n);
@@ -247,9 +259,10 @@ void a_panic_while_writing() {
 
 }  // namespace
 
-// "few" tries few of the places.
+// "few" tries few of the places, "all" every one, which takes long.
 int main(int argc, char** argv) {
-    few = argc > 1 && std::string(argv[1]) == "few";
+    std::string const wish = argc > 1 ? argv[1] : "";
+    places = wish == "few" ? Places::few : wish == "all" ? Places::all : Places::sample;
     a_panic_at_every_place();
     a_panic_at_a_closest_point();
     a_cancellation_at_every_poll();

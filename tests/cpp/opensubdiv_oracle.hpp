@@ -7,7 +7,9 @@
 #include <opensubdiv/bfr/refinerSurfaceFactory.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <unordered_map>
 #include <vector>
 
 namespace Bfr = OpenSubdiv::Bfr;
@@ -123,15 +125,26 @@ struct Oracle {
         return index;
     }
 
-    std::vector<Vector> grid(Cell const& cell) const {
-        std::vector<Vector> result;
-        for (int j = 0; j <= fine; ++j) {
-            for (int i = 0; i <= fine; ++i) {
-                result.push_back(at(cell.face, cell.corner, cell.u + i / double(coarse * fine),
-                                    cell.v + j / double(coarse * fine)));
-            }
+    // The fine tessellation of a cell, kept as long as there is room: queries come back to the same cells.
+    struct Grid {
+        std::array<Vector, (fine + 1) * (fine + 1)> points;
+        Box box;
+    };
+    static constexpr std::size_t most_grids = 30000;  // of 7 kB each
+    mutable std::unordered_map<int, Grid> grids;
+
+    Grid const& grid(int number) const {
+        auto const known = grids.find(number);
+        if (known != grids.end()) return known->second;
+        if (grids.size() >= most_grids) grids.clear();
+        Grid& made = grids[number];
+        Cell const& cell = cells[number];
+        for (int k = 0; k < (fine + 1) * (fine + 1); ++k) {
+            made.points[k] = at(cell.face, cell.corner, cell.u + k % (fine + 1) / double(coarse * fine),
+                                cell.v + k / (fine + 1) / double(coarse * fine));
+            made.box.add(made.points[k]);
         }
-        return result;
+        return made;
     }
 
     // Distance of the closest point of the fine tessellation; `best` is a distance that may be undercut.
@@ -140,7 +153,9 @@ struct Oracle {
         if (here.box.distance_to(p) >= best) return best;
         for (int i = here.first; i < here.first + here.count; ++i) {
             if (cells[i].box.distance_to(p) >= best) continue;
-            for (Vector const& q : grid(cells[i])) best = std::min(best, distance(p, q));
+            Grid const& fine_points = grid(i);
+            if (fine_points.box.distance_to(p) >= best) continue;
+            for (Vector const& q : fine_points.points) best = std::min(best, distance(p, q));
         }
         if (here.count > 0) return best;
         int a = node + 1, b = here.left;
@@ -163,7 +178,9 @@ struct Oracle {
         if (!here.box.meets(o, d)) return;
         for (int i = here.first; i < here.first + here.count; ++i) {
             if (!cells[i].box.meets(o, d)) continue;
-            auto const p = grid(cells[i]);
+            Grid const& fine_points = grid(i);
+            if (!fine_points.box.meets(o, d)) continue;
+            auto const& p = fine_points.points;
             for (int k = 0; k < fine * fine; ++k) {
                 int const at = k / fine * (fine + 1) + k % fine;
                 triangle(o, d, p[at], p[at + 1], p[at + fine + 2], found);

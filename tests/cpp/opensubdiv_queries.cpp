@@ -2,7 +2,8 @@
 // of OpenSubdiv's surface; no point of the fine tessellation may be closer; every hit of its triangles that is not grazing must
 // have one of welt's beside it; and the sign of distances must be that of its winding number.
 //
-// Ten tagged shapes and ten cages; 2,000 queries of each class over all, or as many as the argument says. Signed distances are
+// Ten tagged shapes and ten cages; 2,000 queries of each class over all, or as many as the argument says; with a second argument
+// only those whose name it is part of. Signed distances are
 // asked of those that are closed. The table at the end has per class how many were asked, how many points found, how many of
 // these compared, the largest difference in parts of the size, and how many answers are wrong.
 
@@ -19,6 +20,7 @@ namespace {
 constexpr int shapes = 20;
 int tagged_tested = 0, cages_tested = 0;
 std::size_t queries_per_shape = 100;
+std::string part_of_name;
 double largest_off = 0;
 
 // What was asked of one class of queries, how often welt found something, with how much that was compared, and how much the
@@ -224,6 +226,7 @@ void compare(std::string const& name, Polygons const& polygons, Mesh const& mesh
     if (name.rfind("osd/", 0) == 0 && !tagged) return;
     if (name.rfind("osd/loop", 0) == 0 || polygons.sizes.size() > 800 || polygons.sizes.size() < 6 || count == shapes / 2) return;
     ++count;
+    if (name.find(part_of_name) == std::string::npos) return;
     Shape const shape(name, polygons, mesh);
     Points const feet = shape.closest_points();
     shape.starts_and_radii(feet);
@@ -239,6 +242,7 @@ void compare(std::string const& name, Polygons const& polygons, Mesh const& mesh
 
 int main(int argc, char** argv) {
     if (argc > 1) queries_per_shape = std::strtoul(argv[1], nullptr, 10) / shapes;
+    if (argc > 2) part_of_name = argv[2];
     int const code = for_each_cage(compare, true);
     int const tested = tagged_tested + cages_tested;
     std::printf("%d shapes; found points are off OpenSubdiv's surface by at most %.1e of the size\n", tested, largest_off);

@@ -8,17 +8,19 @@ divergence theorem, extrapolated from two levels."""
 
 import argparse
 import json
+import math
 import os
 import subprocess
 import sys
 import tempfile
 
 HERE = os.path.dirname(os.path.abspath(__file__))
-# Faces of the finer refinement, roughly.
-FINE = 150_000
 # What the extrapolation is good for, relative.
 VOLUME = 1e-4
-HEAD = "cage|clean|faces|extraordinary|patches|rings|deviation|rms|normals, degrees|closed shells|borders left open|valid|tolerance|volume error|seconds|result"
+HEAD = (
+    "cage|clean|faces|extraordinary|patches|faces per patch|rings|deviation|rms|normals at vertices|along sides|"
+    "closed shells|borders left open|valid|volume error|seconds|result"
+)
 
 
 def read(path):
@@ -64,9 +66,9 @@ def volume(path):
     return sum(abs(six) / 6 for component, six in found.items() if component not in opened)
 
 
-def expected_volume(welt, cage, faces, folder):
+def expected_volume(welt, cage, faces, folder, fine):
     level = 2
-    while faces * 4 ** (level + 1) < FINE and level < 6:
+    while faces * 4 ** (level + 1) < fine and level < 6:
         level += 1
     found = []
     for each in (level - 1, level):
@@ -74,6 +76,38 @@ def expected_volume(welt, cage, faces, folder):
         subprocess.run([welt, "limit", cage, "-o", output, "--level", str(each)], check=True, capture_output=True)
         found.append(volume(output))
     return found[1] + (found[1] - found[0]) / 3
+
+
+def corners(patch):
+    """Per corner its pole, the next one along the side that begins there, and the one before along the side that ends there."""
+    m, n = patch["pole_counts"]
+    poles = patch["poles"]
+    places = [(0, 1, m), (m - 1, 2 * m - 1, m - 2), (m * n - 1, m * n - 2, m * n - m - 1), (m * (n - 1), m * (n - 2), m * (n - 1) + 1)]
+    return [tuple(poles[place] for place in corner) for corner in places]
+
+
+def normal(corner):
+    origin, (ax, ay, az), (bx, by, bz) = [[x - o for x, o in zip(pole, corner[0])] for pole in corner]
+    found = [ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx]
+    length = math.hypot(*found)
+    return [x / length for x in found] if length else None
+
+
+def vertices(patches):
+    """Number of extraordinary vertices, and the greatest angle in degrees between the normals of two neighbours at one."""
+    around = [corners(patch) for patch in patches]
+    found, worst = set(), 0.0
+    for patch, own in zip(patches, around):
+        for corner in range(4):
+            if not patch["irregular"][corner]:
+                continue
+            found.add(tuple(own[corner][0]))
+            beyond = patch["neighbours"][corner]
+            here = normal(own[corner])
+            there = beyond and normal(around[beyond[0]][(beyond[1] + 1) % 4])
+            if here and there:
+                worst = max(worst, math.degrees(2 * math.asin(min(1.0, math.dist(here, there) / 2))))
+    return len(found), worst
 
 
 def sew(path, home, seconds):
@@ -85,7 +119,7 @@ def sew(path, home, seconds):
     return json.loads(lines[0]) if lines else None
 
 
-def cells(welt, cage, folder, seconds):
+def cells(welt, cage, folder, seconds, fine):
     """The cells of a row but the first one, and whether all is as it should be."""
     asked = subprocess.run([welt, "check", "--json", cage], capture_output=True, text=True)
     try:
@@ -106,14 +140,12 @@ def cells(welt, cage, folder, seconds):
     with open(path) as file:
         content = json.load(file)
     report, patches = content["report"], content["patches"]
-    corners = set()
-    for patch in patches:
-        m, n = patch["pole_counts"]
-        for corner, place in enumerate([0, m - 1, m * n - 1, m * (n - 1)]):
-            if patch["irregular"][corner]:
-                corners.add(tuple(patch["poles"][place]))
-    row = [clean, report["faces"], len(corners), report["patches"], report["rings"]]
-    row += [f"{report['max_relative_deviation']:.1e}", f"{report['rms_relative_deviation']:.1e}", f"{report['max_normal_jump']:.2f}"]
+    irregular, at_vertices = vertices(patches)
+    sizes = sorted(len(patch["faces"]) for patch in patches)
+    row = [clean, report["faces"], irregular, report["patches"], f"{sizes[0]} / {sizes[len(sizes) // 2]} / {sizes[-1]}", report["rings"]]
+    row += [f"{report['max_relative_deviation']:.1e}", f"{report['rms_relative_deviation']:.1e}"]
+    # On creases patches have normals of their own.
+    row += ["-" if check["creases"] else f"{at_vertices:.0e}", f"{report['max_normal_jump']:.2f}"]
     try:
         found = sew(path, folder, seconds)
     except subprocess.TimeoutExpired:
@@ -122,11 +154,11 @@ def cells(welt, cage, folder, seconds):
         return row + ["FreeCAD failed"], False
     row.append(f"{found['closed']} / {found['closed_components']}")
     row.append(f"{found['free_edges']} / {found['borders']}")
-    row += ["yes" if found["valid"] else "no", f"{found['tolerance']:.0e}"]
+    row.append("yes" if found["valid"] else "no")
     good = found["valid"] and found["gap"] == 0 and found["closed"] == found["closed_components"]
     # Borders of components that touch are sewn together.
     good = good and found["free_edges"] <= found["borders"] and not (found["crowded_edges"] or found["loose"] and clean == "yes")
-    wanted = expected_volume(welt, cage, report["faces"], folder)
+    wanted = expected_volume(welt, cage, report["faces"], folder, fine)
     error = abs(found["volume"] - wanted) / wanted if wanted else abs(found["volume"])
     good = good and error < VOLUME
     row += [f"{error:.0e}", f"{found['sewing_seconds']:.1f} + {found['checking_seconds']:.1f}"]
@@ -137,6 +169,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--welt", default=os.path.join(HERE, "../../target/release/welt"))
     parser.add_argument("--seconds", type=float, default=600)
+    parser.add_argument("--fine", type=int, default=150_000, help="faces of the finer refinement, roughly")
     parser.add_argument("cages", nargs="+")
     options = parser.parse_args()
     print("|" + HEAD + "|\n" + "|---" * (HEAD.count("|") + 1) + "|", flush=True)
@@ -144,7 +177,7 @@ def main():
     for cage in options.cages:
         with tempfile.TemporaryDirectory() as folder:
             try:
-                row, good = cells(options.welt, cage, folder, options.seconds)
+                row, good = cells(options.welt, cage, folder, options.seconds, options.fine)
             except (subprocess.SubprocessError, OSError) as error:
                 row, good = [f"failed: {error}"[:200]], False
         failed += not good

@@ -171,6 +171,10 @@ class Files(unittest.TestCase):
             welt.Mesh.read(CHAIR, limits={"max_faces": 100})
         with self.assertRaisesRegex(welt.ArgumentError, "'max_size' is no limit: there are max_vertices, max_faces"):
             welt.Mesh.read(CHAIR, limits={"max_size": 100})
+        for most in (-1, 1 << 64, 2.5, math.nan, math.inf):
+            with self.subTest(most=most), self.assertRaisesRegex(welt.ArgumentError, "max_faces must be a whole number from 0"):
+                welt.Mesh.read(CHAIR, limits={"max_faces": most})
+        self.assertEqual(welt.Mesh.read(CHAIR, limits={"max_faces": (1 << 64) - 1}).report["repairs"], [])
 
     def test_repair(self):
         book = b"v 0 0 0\nv 0 1 0\nv 1 0 0\nv -1 0 0\nv 0 0 1\nf 1 2 3\nf 2 1 4\nf 1 2 5\n"
@@ -199,6 +203,9 @@ class Features(unittest.TestCase):
             height = hit["position"][2] if arrays.numpy else hit.position[2]
             self.assertAlmostEqual(float(height), -0.05, 3)
         self.assertAlmostEqual(mesh.deviation(sheet(8)).largest, 0.1, 2)
+        compared = mesh.compare(sheet(8), 4, threads=2)
+        self.assertEqual(compared.deviation, mesh.deviation(sheet(8), 4))
+        self.assertTrue(5 < compared.degrees < 90)
 
     def test_wrong_wishes_change_nothing(self):
         mesh = sheet(4)
@@ -235,6 +242,34 @@ class Features(unittest.TestCase):
         rules = welt.Rules(PARAMETER)
         self.assertEqual(rules.parameters[-1], welt.Parameter("height", "length", "How far up", 2.0, 0.5, 10.0))
         self.assertEqual(rules.parameters[:-1], welt.Rules.linear().parameters)
+
+    def test_limits_of_rules(self):
+        mesh = sheet(4)
+        before = mesh.positions.tolist()
+        selection = mesh.select("ring:2,3")
+        for limits, what in (
+            ({"max_script_depth": 0}, "more than 0 procedures and loops inside one another"),
+            ({"max_applications": 1}, "more than 1 applications"),
+            ({"max_steps": 5}, "more than 5 steps"),
+            ({"max_changes": 5}, "more than 5 changes"),
+            ({"max_growth": 1, "max_extra_elements": 2}, "vertices, edges and faces"),
+            ({"max_seconds": 0}, "more than 0 s"),
+        ):
+            with self.subTest(limits=limits), self.assertRaisesRegex(welt.RuleError, what):
+                mesh.apply(selection, "groove", limits=limits)
+        for limits, what in (
+            ({"max_size": 1}, "'max_size' is no limit: there are max_script_depth, max_applications, max_steps"),
+            ({"max_script_depth": 1 << 32}, "max_script_depth must be a whole number from 0 to 2\\^32 - 1"),
+            ({"max_steps": -1}, "max_steps must be a whole number from 0 to 2\\^64 - 1, not -1"),
+            ({"max_steps": math.inf}, "max_steps must be a whole number"),
+            ({"max_seconds": -0.5}, "max_seconds must be 0 or more, not -0.5"),
+            ({"max_seconds": math.nan}, "max_seconds must be 0 or more, not nan"),
+        ):
+            with self.subTest(limits=limits), self.assertRaisesRegex(welt.ArgumentError, what):
+                mesh.apply(selection, "groove", limits=limits)
+        self.assertEqual(mesh.positions.tolist(), before)
+        mesh.apply(selection, "groove", limits={"max_seconds": math.inf, "max_steps": (1 << 64) - 1})
+        self.assertGreater(mesh.vertex_count, 25)
 
     def test_marks_that_no_rule_handles(self):
         # The rules of linear features do nothing without the cuts that the feature stage prepares.

@@ -32,7 +32,7 @@ from .errors import (
 )
 from .job import Job
 from .marks import Parameter, Rules, Selection, features
-from .mesh import Deviation, Mesh
+from .mesh import Comparison, Deviation, Mesh
 from .patches import Patch, Patches
 from .surface import NONE, Refinement, Surface
 
@@ -45,6 +45,7 @@ __all__ = [
     "ArgumentError",
     "BufferTooSmallError",
     "CancelledError",
+    "Comparison",
     "Deviation",
     "Error",
     "FileError",

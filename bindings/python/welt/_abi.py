@@ -248,6 +248,8 @@ int32_t welt_mesh_displace(welt_mesh *mesh, const uint32_t *vertices, const doub
     welt_error **error);
 int32_t welt_mesh_deviation(const welt_mesh *first, const welt_mesh *second, uint32_t samples, double *values,
     const welt_job *job, welt_error **error);
+int32_t welt_mesh_compare(const welt_mesh *first, const welt_mesh *second, uint32_t samples, uint32_t threads,
+    double *values, const welt_job *job, welt_error **error);
 int32_t welt_surface_create(const welt_mesh *mesh, const uint32_t *faces, size_t count, const welt_job *job,
     welt_surface **surface, welt_error **error);
 void welt_surface_free(welt_surface *surface);

@@ -43,14 +43,26 @@ def importing(repair: bool, weld: float, limits: Mapping[str, int]) -> Any:
     options = ImportOptions()
     raw("welt_import_options_init", options, ctypes.sizeof(options))
     options.repair, options.weld = int(repair), weld
-    known = [field[0] for field in ImportOptions._fields_ if field[0].startswith("max_")]
+    limit(options, limits)
+    return ctypes.byref(options)
+
+
+def limit(options: ctypes.Structure, limits: Mapping[str, Union[int, float]]) -> None:
+    """Sets members max_..., which ctypes would cut off to their bits."""
+    known = {field[0]: field[1] for field in options._fields_ if field[0].startswith("max_")}
     for name, most in limits.items():
         if name not in known:
             raise ArgumentError(f"{name!r} is no limit: there are {', '.join(known)}")
-        if not 0 <= most < 1 << 64:
-            raise ArgumentError(f"{name} must be from 0 to 2^64 - 1, not {most}")
+        kind = known[name]
+        if kind is ctypes.c_double:
+            if not most >= 0:
+                raise ArgumentError(f"{name} must be 0 or more, not {most}")
+        else:
+            bits = 8 * ctypes.sizeof(kind)
+            if most != most or not 0 <= most < 1 << bits or most != int(most):
+                raise ArgumentError(f"{name} must be a whole number from 0 to 2^{bits} - 1, not {most}")
+            most = int(most)
         setattr(options, name, most)
-    return ctypes.byref(options)
 
 
 def batch(threads: int) -> Any:
@@ -60,11 +72,14 @@ def batch(threads: int) -> Any:
     return ctypes.byref(options)
 
 
-def feature(fit: str, parity: str, strict: bool, deviation: bool) -> FeatureOptions:
+def feature(
+    fit: str, parity: str, strict: bool, deviation: bool, limits: Mapping[str, Union[int, float]]
+) -> FeatureOptions:
     options = FeatureOptions()
     raw("welt_feature_options_init", options, ctypes.sizeof(options))
     options.fit, options.parity = constant("WELT_FIT_", fit), constant("WELT_PARITY_", parity)
     options.strict, options.deviation = int(strict), int(deviation)
+    limit(options, limits)
     return options
 
 

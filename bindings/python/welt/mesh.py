@@ -28,6 +28,17 @@ class Deviation(NamedTuple):
     percentile_95: float
 
 
+class Comparison(NamedTuple):
+    """How far two limit surfaces are apart, and how their normals and curvatures differ."""
+
+    deviation: Deviation
+    #: The largest angle between the normals of a point and of its closest point.
+    degrees: float
+    #: Differences of the mean curvatures there, per model unit.
+    curvature_root_mean_square: float
+    curvature_largest: float
+
+
 class Mesh(Elements):
     """A control mesh; its vertices, edges and faces are numbered from 0 without gaps.
 
@@ -93,6 +104,13 @@ class Mesh(Elements):
         run(job, lambda watched: call("welt_mesh_deviation", self, other, count, values, watched))
         return Deviation(*values)
 
+    def compare(self, other: Mesh, samples: int = 8, *, threads: int = 1, job: Optional[Job] = None) -> Comparison:
+        """As `deviation`, with the change of normals and of mean curvature."""
+        values = (ctypes.c_double * 6)()
+        count, parts = options.whole(samples, "samples"), options.whole(threads, "threads")
+        run(job, lambda watched: call("welt_mesh_compare", self, other, count, parts, values, watched))
+        return Comparison(Deviation(*values[:3]), *values[3:])
+
     # --- Loop subdivision, of triangles
 
     def refine_loop(self, levels: int) -> Mesh:
@@ -144,6 +162,7 @@ class Mesh(Elements):
         parity: str = "auto",
         strict: bool = False,
         deviation: bool = False,
+        limits: Mapping[str, Union[int, float]] = {},
         job: Optional[Job] = None,
     ) -> Dict[str, Any]:
         """Puts features along the marked edges, fits the mesh to the surface as it was, and gives the report.
@@ -156,10 +175,13 @@ class Mesh(Elements):
         parity: "auto", "all_quad" or "local": what is done about faces with an odd number of sides.
         strict: marks that no rule handles are an error; else the report lists them.
         deviation: measure deviations and look for thin walls; costs more than the feature.
+        limits: what each run of the rules may cost, beyond which it is a RuleError: max_script_depth, max_applications,
+            max_steps, max_changes (of the mesh), max_growth (times the elements of the mesh), max_extra_elements (and as many
+            more), max_seconds. Defaults: docs/trust.md.
 
         After an error the mesh is as it was before. Vertices keep their numbers, new ones follow.
         """
-        chosen = options.feature(fit, parity, strict, deviation)
+        chosen = options.feature(fit, parity, strict, deviation, limits)
         text = options.settings(settings)
         what: List[Any]
         if isinstance(features, Rules):

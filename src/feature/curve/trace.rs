@@ -42,7 +42,7 @@ pub(in super::super) fn trace(
     let edge = mean_edge(mesh, &faces).ok_or_else(|| {
         error("it is far from the surface; give points on or near the limit surface, in model units")
     })?;
-    let surface = LimitSurface::around(mesh, &faces);
+    let surface = LimitSurface::prepared(mesh, &faces)?;
     // Also bounds the number of samples.
     let reach = ClosestOptions { radius: surface.size(), facing: None };
     if let Some(far) = curve.points.iter().position(|&point| surface.closest(point, &reach).is_none()) {

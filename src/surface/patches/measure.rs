@@ -39,7 +39,7 @@ pub(super) struct Ruler<'a> {
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) enum Spans {
     All,
-    /// The two beside extraordinary vertices.
+    /// The three beside extraordinary vertices.
     Last,
 }
 
@@ -62,7 +62,7 @@ impl Ruler<'_> {
                 let steps = places.into_iter().zip(patch.irregular).filter(|&(_, irregular)| irregular);
                 let count = match steps.map(|((i, j), _)| i.max(j)).min() {
                     Some(0) => FINE,
-                    Some(1) => COARSE,
+                    Some(1 | 2) => COARSE,
                     _ if which == Spans::Last => continue,
                     _ => 1,
                 };

@@ -6,14 +6,15 @@
 //! the surface itself. Extraordinary vertices lie at corners of rectangles only. Towards them the surface consists of
 //! rings of ever smaller pieces; the patch has knots at the edges of the first few rings (at 1/2, 1/4, 1/8 of a face) and
 //! is exact there too. Within the last ring the poles continue the rings round it, except those next to the vertex: that at
-//! the corner is the limit of the vertex, those beside it along the sides lie in the tangent plane there, and those inside
-//! are raised or lowered so that the normals of the patches nearly agree along the sides. So the two
+//! the corner is the limit of the vertex, those beside it along the sides lie in the tangent plane there, and the next ones on
+//! and beside the sides are raised or lowered so that the normals of the patches nearly agree along the sides. So the three
 //! innermost spans deviate a little. As many rings are taken as bring the deviation below the tolerance.
 //!
 //! Both patches at a side have the same knots along it and poles equal in every bit.
 //!
 //! Where a component of the mesh has other faces than quads, all its faces are cut into quadrants first.
 
+mod blend;
 mod cells;
 mod corners;
 mod frame;
@@ -67,7 +68,7 @@ pub struct PatchReport {
     pub max_deviation: f64,
     /// The same in parts of the mean length of the edges of the face.
     pub max_relative_deviation: f64,
-    /// Root mean square of all distances measured in the two spans beside extraordinary vertices, in parts of the same length.
+    /// Root mean square of all distances measured in the three spans beside extraordinary vertices, in parts of the same length.
     pub rms_relative_deviation: f64,
     /// Greatest angle in degrees between the normals of two patches along a shared side that is no crease.
     pub max_normal_jump: f64,
@@ -84,9 +85,10 @@ pub struct Patches {
 
 /// Rings at first and at most.
 const RINGS: std::ops::RangeInclusive<u32> = 3..=16;
-/// Aim for the angle between the normals of patches and surface, in degrees, and the most rings that are spent on it: a surface
-/// with a fold has no normal to come near to.
+/// Aims for the angles between the normals of patches and surface, and of two patches at a side, in degrees, and the most rings
+/// that are spent on them: a surface with a fold has no normal to come near to.
 const ANGLE: f64 = 1.0;
+const JUMP: f64 = 0.5;
 const RINGS_FOR_NORMALS: u32 = 8;
 /// What one more ring divides the deviation by at best: seen at valence 3.
 const PER_RING: f64 = 6.0;
@@ -154,14 +156,15 @@ impl Patches {
                 patches.push(patch);
             }
             seam::join(&mut patches, &neighbours);
-            corners::balance(&mut patches, &normals, &neighbours, smooth);
+            blend::blend(&mut patches, &normals, &neighbours, smooth);
             let (mut worst, mut angle): (f64, f64) = (0.0, 0.0);
             for (region, patch) in regions.iter().zip(&patches) {
                 let found = ruler.distance(pieces, region, patch, Spans::Last);
                 (worst, angle) = (worst.max(found.relative), angle.max(found.angle));
             }
+            let jump = worst_jump(&patches, &neighbours, smooth);
             let near = worst <= options.tolerance || rings >= *RINGS.end();
-            let upright = angle <= ANGLE || rings >= RINGS_FOR_NORMALS;
+            let upright = (angle <= ANGLE && jump <= JUMP) || rings >= RINGS_FOR_NORMALS;
             if near && upright {
                 break patches;
             }
@@ -191,18 +194,30 @@ impl Patches {
         smooth: impl Fn(usize, usize) -> bool,
     ) {
         let report = &mut self.report;
-        for (number, (patch, sides)) in patches.iter().zip(neighbours).enumerate() {
+        for patch in patches {
             report.max_deviation = report.max_deviation.max(patch.deviation);
             report.max_relative_deviation = report.max_relative_deviation.max(patch.relative_deviation);
-            for (side, beyond) in sides.iter().enumerate() {
-                let Some((other, there)) = beyond.filter(|&beyond| beyond > (number, side)) else { continue };
-                if smooth(number, side) {
-                    let jump = measure::normal_jump(patch, side, &patches[other], there);
-                    report.max_normal_jump = report.max_normal_jump.max(jump);
-                }
+        }
+        report.max_normal_jump = report.max_normal_jump.max(worst_jump(patches, neighbours, smooth));
+    }
+}
+
+/// Greatest angle in degrees between the normals of two patches along the sides that are `smooth`.
+fn worst_jump(
+    patches: &[SplinePatch],
+    neighbours: &seam::Neighbours,
+    smooth: impl Fn(usize, usize) -> bool,
+) -> f64 {
+    let mut worst: f64 = 0.0;
+    for (number, (patch, sides)) in patches.iter().zip(neighbours).enumerate() {
+        for (side, beyond) in sides.iter().enumerate() {
+            let Some((other, there)) = beyond.filter(|&beyond| beyond > (number, side)) else { continue };
+            if smooth(number, side) {
+                worst = worst.max(measure::normal_jump(patch, side, &patches[other], there));
             }
         }
     }
+    worst
 }
 
 fn make(cells: &[cells::Cell], region: &Region, inner: &knots::Inner, pieces: &mut Pieces) -> SplinePatch {

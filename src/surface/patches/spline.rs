@@ -21,7 +21,7 @@ pub struct SplinePatch {
     /// same poles, in opposite order.
     pub neighbours: [Option<(usize, usize)>; 4],
     /// Per corner, from that at the first u and v counter-clockwise: whether it lies at an extraordinary vertex. In
-    /// the last two spans beside such a corner the patch is an approximation, everywhere else exact.
+    /// the last three spans beside such a corner the patch is an approximation, everywhere else exact.
     pub irregular: [bool; 4],
     /// Greatest distance to the limit surface that was found, in units of the model; 0 where the patch is exact.
     pub deviation: f64,

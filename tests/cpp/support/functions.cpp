@@ -177,6 +177,7 @@ void surfaces() {
     ADD(welt_patches_get, "rro", {w.patches(), 0, &w.out.patch, &w.out.error});
     ADD(welt_patches_report, "rro", {w.patches(), &w.out.report, &w.out.error});
     ADD(welt_mesh_deviation, "rrroo", {w.mesh(), w.second(), 2, w.out.doubles.data(), w.job(), &w.out.error});
+    ADD(welt_mesh_compare, "rrroo", {w.mesh(), w.second(), 2, 2, w.out.doubles.data(), w.job(), &w.out.error});
 }
 
 void features() {

@@ -320,7 +320,11 @@ impl Host<'_> {
                     let (first, second, job) = (self.mesh(), self.mesh(), self.job());
                     let samples = self.byte() as u32 % 4;
                     let values = self.values.as_mut_ptr();
-                    welt_mesh_deviation(first, second, samples, values, job, &mut error);
+                    if self.byte() > 128 {
+                        welt_mesh_deviation(first, second, samples, values, job, &mut error);
+                    } else {
+                        welt_mesh_compare(first, second, samples, samples, values, job, &mut error);
+                    }
                 }
                 21 => {
                     let surface = self.surface();

@@ -5,11 +5,12 @@
 //! kept inside the part, finds its root if there is one.
 
 use super::Bicubic;
-use super::line::MAX_PARTS;
 use glam::{DMat2, DVec2, DVec3};
 
 /// How often a patch is halved at most: beyond, the line touches the surface.
 const MAX_HALVINGS: u32 = 12;
+/// Parts of pieces looked at with proof; beyond (a line that lies in the surface) they are no longer halved.
+const MAX_PARTS: u32 = 4000;
 
 /// A point on the axis, at (a, b) of the patch.
 pub(super) struct Crossing {
@@ -50,7 +51,8 @@ pub(super) fn crossings(bicubic: &Bicubic, tolerance: f64, parts: &mut u32, out:
             Verdict::AtMostOne => true,
             Verdict::Unknown => false,
         };
-        if certain || part.halvings >= MAX_HALVINGS || *parts > MAX_PARTS {
+        let last = part.halvings >= MAX_HALVINGS || *parts > MAX_PARTS;
+        if certain || last || lies_in_its_plane(&part.bicubic, tolerance) {
             let (s, t, jet) = approach(&part.bicubic);
             if jet.position.truncate().length() <= tolerance {
                 out.push(Crossing {
@@ -73,6 +75,15 @@ pub(super) fn crossings(bicubic: &Bicubic, tolerance: f64, parts: &mut u32, out:
             });
         }
     }
+}
+
+/// True where the patch is flat and the axis lies in its plane: they share a line or nothing, of which one point is wanted.
+fn lies_in_its_plane(bicubic: &Bicubic, tolerance: f64) -> bool {
+    let points = || bicubic.points.as_flattened().iter().map(|p| p.truncate());
+    let farthest =
+        points().fold(DVec2::ZERO, |most, p| if p.length_squared() > most.length_squared() { p } else { most });
+    let way = farthest.normalize_or_zero();
+    points().all(|p| p.perp_dot(way).abs() <= tolerance)
 }
 
 fn verdict(bicubic: &Bicubic, tolerance: f64) -> Verdict {
