@@ -1,10 +1,11 @@
 //! Grooves of depth 0 on real cages: how far each method leaves the limit surface from what it was. Prints the tables of
 //! docs/optimisation.md.
 //!
-//!     cargo run --release --example insertion -- [rings|crossings|tees|widths]... [every=N] [faces=N] [cages=FOLDER,...] [list]
+//!     cargo run --release --example insertion -- [rings|crossings|tees|widths]... [every=N] [faces=N] [cages=FOLDER,...]
+//!         [methods=NAME,...] [samples=N] [list]
 //!
-//! reads `../shared/data` (or `data=FOLDER`); `every=N` takes every Nth case, `faces=N` cages of at most N faces, and `list`
-//! prints every case too.
+//! reads `../shared/data` (or `data=FOLDER`); `every=N` takes every Nth case, `faces=N` cages of at most N faces, `methods` are
+//! compared with `none`, surfaces at `samples` x `samples` places per face (3), and `list` prints every case too.
 
 #[allow(dead_code, reason = "shared with the tests")]
 #[path = "../tests/common/mod.rs"]
@@ -18,7 +19,6 @@ use welt::job::Job;
 use welt::mesh::Mesh;
 use welt::optimise::Method;
 
-const METHODS: [Method; 5] = [Method::None, Method::Loop, Method::Solve, Method::Fit, Method::FitSlide];
 const FOLDERS: &str = "upholstery,product,organic,classic,mechanical";
 /// Where an insertion moves the surface by less than this part of an edge in rms, nothing is to be gained.
 const FLAT: f64 = 1e-3;
@@ -64,13 +64,13 @@ fn quantile(mut values: Vec<f64>, q: f64) -> f64 {
 }
 
 /// One row per method: medians, in brackets the tenth that is worst.
-fn table(title: &str, cases: &[[Figures; METHODS.len()]]) {
+fn table(title: &str, methods: &[Method], cases: &[Vec<Figures>]) {
     println!("\n{title}: {} cases\n", cases.len());
     println!(
         "| method | max | rms | 95 % | closer in max | closer in rms | degrees | curvature, rms | curvature, max | curvature worse | held | ms | least |"
     );
     println!("|---|---|---|---|---|---|---|---|---|---|---|---|---|");
-    for (k, method) in METHODS.into_iter().enumerate() {
+    for (k, method) in methods.iter().enumerate() {
         let all = |figure: &dyn Fn(&Figures, &Figures) -> f64| -> Vec<f64> {
             cases.iter().map(|case| figure(&case[k], &case[0])).collect()
         };
@@ -102,15 +102,20 @@ fn table(title: &str, cases: &[[Figures; METHODS.len()]]) {
 }
 
 /// Depth 0 with every method.
-fn insertions(title: &str, cases: impl Iterator<Item = (String, Mesh, Marked)>, list: bool) {
+fn insertions(
+    title: &str,
+    methods: &[Method],
+    cases: impl Iterator<Item = (String, Mesh, Marked)>,
+    samples: usize,
+    list: bool,
+) {
     let mut figures = Vec::new();
     for (name, mesh, marked) in cases {
-        let insert = |method| Figures::of(&groove(&mesh, &marked, "0", method, 3)?, marked.edge);
-        let none = insert(METHODS[0]);
-        if none.is_none_or(|none| none.rms <= FLAT) {
-            continue;
-        }
-        let Some(of_case) = METHODS.map(insert).into_iter().collect::<Option<Vec<Figures>>>() else {
+        let insert = |method| Figures::of(&groove(&mesh, &marked, "0", method, samples)?, marked.edge);
+        let Some(none) = insert(Method::None).filter(|none| none.rms > FLAT) else { continue };
+        let others = methods.iter().filter(|&&method| method != Method::None).map(|&method| insert(method));
+        let Some(of_case) = std::iter::once(Some(none)).chain(others).collect::<Option<Vec<Figures>>>()
+        else {
             continue;
         };
         if list {
@@ -121,20 +126,20 @@ fn insertions(title: &str, cases: impl Iterator<Item = (String, Mesh, Marked)>, 
             }
             println!();
         }
-        figures.extend(<[Figures; METHODS.len()]>::try_from(of_case));
+        figures.push(of_case);
     }
-    table(title, &figures);
+    table(title, methods, &figures);
 }
 
 /// Grooves of a tenth of an edge: widths and depths reached over asked, and time.
-fn widths(cases: impl Iterator<Item = (String, Mesh, Marked)>) {
+fn widths(methods: &[Method], cases: impl Iterator<Item = (String, Mesh, Marked)>) {
     let cases: Vec<_> = cases.collect();
     println!(
         "\nwidth 30 %, depth 10 %: reached over asked in the mean of the worst places, places off by more than 3 %\n"
     );
     println!("| method | width, 1 % | 10 % | 50 % | 90 % | 99 % | off | depth off | corrections | fit, ms |");
     println!("|---|---|---|---|---|---|---|---|---|---|");
-    for method in METHODS {
+    for &method in methods {
         let (mut worst, mut times, mut corrections) = (Vec::new(), Vec::new(), 0);
         let (mut places, mut off, mut depth_off) = (0, 0, 0);
         for (_, mesh, marked) in &cases {
@@ -169,9 +174,17 @@ fn main() {
     let wanted = |name: &str| arguments.iter().any(|a| a == name);
     let kinds = ["rings", "crossings", "tees", "widths"];
     let all = !kinds.iter().any(|kind| wanted(kind));
-    let step = value("every").and_then(|n| n.parse().ok()).filter(|n| *n > 0).unwrap_or(1);
+    let number = |name| value(name).and_then(|n| n.parse().ok()).filter(|n| *n > 0);
+    let (step, samples) = (number("every").unwrap_or(1), number("samples").unwrap_or(3));
     let Some(data) = value("data").map(PathBuf::from).or_else(common::shared_data) else { return };
-    let faces = value("faces").and_then(|n| n.parse().ok()).unwrap_or(usize::MAX);
+    let faces = number("faces").unwrap_or(usize::MAX);
+    let methods: Vec<Method> = match value("methods") {
+        Some(names) => std::iter::once("none")
+            .chain(names.split(',').filter(|name| *name != "none"))
+            .filter_map(Method::from_name)
+            .collect(),
+        None => Method::ALL.map(|entry| entry.1).to_vec(),
+    };
     let cages: Vec<(String, Mesh)> = value("cages")
         .unwrap_or(FOLDERS)
         .split(',')
@@ -193,8 +206,8 @@ fn main() {
         };
         let cases = cages.iter().flat_map(of_cage).step_by(step);
         match kind {
-            "widths" => widths(cases),
-            _ => insertions(kind, cases, wanted("list")),
+            "widths" => widths(&methods, cases),
+            _ => insertions(kind, &methods, cases, samples, wanted("list")),
         }
     }
 }

@@ -659,10 +659,10 @@ public:
         detail::call(welt_mesh_displace, get(), vertices.data(), heights.data(), heights.size());
     }
     // fit: one of WELT_FIT_*.
-    Report fit(Surface const& surface, std::uint32_t fit = WELT_FIT_SOLVE, Job const* job = nullptr) {
+    Report fit(Surface const& surface, std::uint32_t fit = WELT_FIT_SURFACE_SLIDE, Job const* job = nullptr) {
         return fitted(nullptr, 0, surface, fit, job);
     }
-    Report fit(View<std::uint32_t> vertices, Surface const& surface, std::uint32_t fit = WELT_FIT_SOLVE,
+    Report fit(View<std::uint32_t> vertices, Surface const& surface, std::uint32_t fit = WELT_FIT_SURFACE_SLIDE,
                Job const* job = nullptr) {
         // NULL would stand for all vertices.
         static constexpr std::uint32_t none = 0;

@@ -244,7 +244,7 @@ void add_level(RichParameterList& list, int level) {
 }
 
 void add_options(RichParameterList& list) {
-    list.addParam(RichEnum("fit", int(WELT_FIT_SOLVE), QStringList{"none", "loop", "solve", "fit", "fit and slide"}, "Fit",
+    list.addParam(RichEnum("fit", int(WELT_FIT_SURFACE_SLIDE), QStringList{"none", "loop", "solve", "fit", "fit and slide"}, "Fit",
                            "How the changed mesh is fitted to the surface as it was: not at all; by iteration; by the system "
                            "that the iteration converges to; by least squares over the surface; the same, with vertices that "
                            "may slide along it."));

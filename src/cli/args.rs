@@ -147,7 +147,7 @@ pub struct Apply {
     #[arg(long = "set", value_name = "[KIND.]NAME=VALUE")]
     pub set: Vec<String>,
     /// How to fit the changed mesh to the surface as it was
-    #[arg(long, visible_alias = "method", value_enum, default_value = "solve")]
+    #[arg(long, visible_alias = "method", value_enum, default_value = "fit+slide")]
     pub optimise: FitMethod,
     /// What to do about faces that the marks leave with an odd number of sides
     #[arg(long, value_enum, default_value = "auto")]

@@ -244,7 +244,7 @@ pub struct Options {
 impl Default for Options {
     fn default() -> Self {
         Self {
-            method: Method::Solve,
+            method: Method::FitSlide,
             parity: parity::Mode::default(),
             strict: false,
             samples: 0,

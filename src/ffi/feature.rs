@@ -66,7 +66,7 @@ fn parity_mode(number: u32) -> Result<parity::Mode, Failure> {
 pub struct WeltFeatureOptions {
     /// Set by welt_feature_options_init; leave it.
     pub struct_size: u32,
-    /// How the changed mesh is fitted to the surface as it was: one of WELT_FIT_*. Default WELT_FIT_SOLVE.
+    /// How the changed mesh is fitted to the surface as it was: one of WELT_FIT_*. Default WELT_FIT_SURFACE_SLIDE.
     pub fit: u32,
     /// Not 0: measure deviations and look for thin walls; costs more than the feature. Default 0.
     pub deviation: u32,
@@ -103,7 +103,7 @@ unsafe impl Options for WeltFeatureOptions {
         let Limits { applications, steps, edits, depth, growth, extra, time } = Limits::default();
         Self {
             struct_size,
-            fit: WELT_FIT_SOLVE,
+            fit: WELT_FIT_SURFACE_SLIDE,
             deviation: 0,
             parity: WELT_PARITY_AUTO,
             strict: 0,

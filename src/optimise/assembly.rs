@@ -10,9 +10,9 @@ use faer::{Conj, MatMut, Side};
 pub(super) struct Assembly {
     /// First unknown of each group, and the number of unknowns.
     firsts: Vec<usize>,
-    /// Per group the groups it meets that are not before it, ascending, each with its row within the group's columns
-    /// as counted from the first unknown of the group.
-    met: Vec<Vec<(u32, usize)>>,
+    /// Per block and pair of its groups, row by row of the lower triangle, the row within the columns of the lower group at
+    /// which the higher one begins.
+    places: Vec<Vec<u32>>,
     column_starts: Vec<usize>,
     rows: Vec<usize>,
     values: Vec<f64>,
@@ -22,14 +22,16 @@ pub(super) struct Assembly {
 
 impl Assembly {
     /// A system of groups of `sizes` unknowns, of which those named together in one of `blocks` meet.
-    pub(super) fn new<'b>(sizes: &[usize], blocks: impl Iterator<Item = &'b [u32]>) -> Self {
+    pub(super) fn new<'b>(sizes: &[usize], blocks: impl Iterator<Item = &'b [u32]> + Clone) -> Self {
         let mut firsts = vec![0];
         for size in sizes {
             firsts.push(firsts[firsts.len() - 1] + size);
         }
         let unknowns = firsts[sizes.len()];
+        // Per group the groups it meets that are not before it, ascending, each with its row within the group's columns
+        // as counted from the first unknown of the group.
         let mut met: Vec<Vec<(u32, usize)>> = (0..sizes.len() as u32).map(|group| vec![(group, 0)]).collect();
-        for block in blocks {
+        for block in blocks.clone() {
             for &a in block {
                 met[a as usize].extend(block.iter().filter(|&&b| b > a).map(|&b| (b, 0)));
             }
@@ -51,7 +53,21 @@ impl Assembly {
             }
         }
         let values = vec![0.0; rows.len()];
-        Self { firsts, met, column_starts, rows, values, right: vec![0.0; unknowns], symbolic: None }
+        let place = |a: u32, b: u32| {
+            let others = &met[a.min(b) as usize];
+            let found = others.partition_point(|other| other.0 < a.max(b));
+            others.get(found).map_or(0, |other| other.1 as u32)
+        };
+        let places_of = |block: &[u32]| {
+            block
+                .iter()
+                .enumerate()
+                .flat_map(|(i, &a)| block[..=i].iter().map(move |&b| (a, b)))
+                .map(|(a, b)| place(a, b))
+                .collect()
+        };
+        let places = blocks.map(places_of).collect();
+        Self { firsts, places, column_starts, rows, values, right: vec![0.0; unknowns], symbolic: None }
     }
 
     pub(super) fn unknowns(&self) -> usize {
@@ -73,40 +89,36 @@ impl Assembly {
         self.values[self.column_starts[unknown]] += value;
     }
 
-    /// Adds the lower triangle of a dense matrix over the unknowns of the groups of one block, row by row.
-    pub(super) fn add_block(&mut self, block: &[u32], matrix: &[f64], vector: &[f64]) {
+    /// Adds the lower triangle of a dense matrix over the unknowns of the groups of a block, given row by row, to the
+    /// system; `number` is that of the block, whose groups these are.
+    pub(super) fn add_block(&mut self, number: usize, block: &[u32], matrix: &[f64], vector: &[f64]) {
         let count = vector.len();
+        let mut places = self.places[number].iter();
         let mut a = 0;
         for (i, &row_group) in block.iter().enumerate() {
-            let rows = self.of_group(row_group);
+            let rows = self.firsts[row_group as usize]..self.firsts[row_group as usize + 1];
             self.right[rows.clone()].iter_mut().zip(&vector[a..]).for_each(|(sum, x)| *sum += x);
             let mut b = 0;
-            for &column_group in &block[..=i] {
-                let columns = self.of_group(column_group);
-                self.add_pair([row_group, column_group], |k, l| {
-                    let (k, l) = (a + k, b + l);
-                    matrix[k.max(l) * count + k.min(l)]
-                });
+            for (&column_group, &place) in block[..=i].iter().zip(&mut places) {
+                let columns = self.firsts[column_group as usize]..self.firsts[column_group as usize + 1];
+                let low = row_group.min(column_group);
+                // Column l of a group lacks the l entries above the diagonal.
+                let starts = &self.column_starts[self.firsts[low as usize]..];
+                let start = |column: usize| starts[column] + place as usize - column;
+                for k in 0..rows.len() {
+                    let entries = &matrix[(a + k) * count + b..][..columns.len()];
+                    if row_group == column_group {
+                        entries[..=k].iter().enumerate().for_each(|(l, x)| self.values[start(l) + k] += x);
+                    } else if column_group < row_group {
+                        entries.iter().enumerate().for_each(|(l, x)| self.values[start(l) + k] += x);
+                    } else {
+                        let column = &mut self.values[start(k)..][..entries.len()];
+                        column.iter_mut().zip(entries).for_each(|(sum, x)| *sum += x);
+                    }
+                }
                 b += columns.len();
             }
             a += rows.len();
-        }
-    }
-
-    /// Adds the block of two groups, `entry(k, l)` for unknown k of the first and l of the second.
-    fn add_pair(&mut self, [first, second]: [u32; 2], entry: impl Fn(usize, usize) -> f64) {
-        let (low, high) = (first.min(second), first.max(second));
-        let swapped = first < second;
-        let others = &self.met[low as usize];
-        let Ok(found) = others.binary_search_by_key(&high, |other| other.0) else { return };
-        let place = others[found].1;
-        let (rows, columns) = (self.of_group(high).len(), self.of_group(low));
-        for (l, column) in columns.enumerate() {
-            // Column l of the group lacks the l entries above the diagonal.
-            let start = self.column_starts[column] + place;
-            for k in if low == high { l } else { 0 }..rows {
-                self.values[start + k - l] += if swapped { entry(l, k) } else { entry(k, l) };
-            }
         }
     }
 
@@ -140,9 +152,9 @@ mod tests {
         for _ in 0..2 {
             system.clear();
             // Over the unknowns 1, 2, 0: rows of the lower triangle.
-            system.add_block(&[1, 0], &[4.0, 0.0, 0.0, 1.0, 5.0, 0.0, 0.5, 0.0, 3.0], &[1.0, 2.0, 3.0]);
+            system.add_block(0, &[1, 0], &[4.0, 0.0, 0.0, 1.0, 5.0, 0.0, 0.5, 0.0, 3.0], &[1.0, 2.0, 3.0]);
             // Over 1, 2, 3.
-            system.add_block(&[1, 2], &[1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 2.0, 6.0], &[0.0, 1.0, 4.0]);
+            system.add_block(1, &[1, 2], &[1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 2.0, 6.0], &[0.0, 1.0, 4.0]);
             system.add_diagonal(3, 1.0);
             let x = system.solve().expect("definite");
             let rows = [

@@ -5,6 +5,7 @@
 //! from all faces at once, so it does not depend on their order.
 
 use super::Stop;
+use super::parts::parts;
 use super::samples::Samples;
 use crate::job::{Cancelled, Job};
 use crate::mesh::{Mesh, VertexId};
@@ -26,6 +27,8 @@ pub(super) struct Outcome {
     pub(super) residual: f64,
     /// Vertices that were held, because the surface would have become worse.
     pub(super) held: usize,
+    /// Nothing was held, and curvature gained clearly everywhere.
+    pub(super) is_clear: bool,
 }
 
 /// Runs `fit`, which moves vertices of `free`, and again with those held that strikes name as long as some faces are
@@ -58,7 +61,9 @@ pub(super) fn guarded<'a>(
         repeat += 1;
     };
     // Parts of the surface that no free vertex joins are judged one by one.
+    outcome.is_clear = strikes.is_empty();
     for part in parts(free, samples) {
+        outcome.is_clear &= samples.is_clear(&before, &part);
         if samples.is_worse(&before, &part) {
             for &k in &part {
                 for v in samples.faces[k].control.iter() {
@@ -74,36 +79,4 @@ pub(super) fn guarded<'a>(
     outcome.held = free.iter().filter(|v| strikes.contains_key(v)).count();
     outcome.residual = outcome.residual.max(samples.residual());
     Ok(outcome)
-}
-
-/// The sampled faces, by their numbers, in parts that share no vertex of `free`, which is ascending.
-fn parts(free: &[VertexId], samples: &Samples) -> Vec<Vec<usize>> {
-    let mut part_of: Vec<usize> = (0..free.len()).collect();
-    fn root(part_of: &mut [usize], mut k: usize) -> usize {
-        while part_of[k] != k {
-            part_of[k] = part_of[part_of[k]];
-            k = part_of[k];
-        }
-        k
-    }
-    let of_face = |k: usize| samples.faces[k].control.iter().filter_map(|v| free.binary_search(v).ok());
-    for face in 0..samples.faces.len() {
-        let mut numbers = of_face(face);
-        if let Some(first) = numbers.next() {
-            let first = root(&mut part_of, first);
-            for other in numbers {
-                let other = root(&mut part_of, other);
-                part_of[other] = first;
-            }
-        }
-    }
-    let mut parts: FxHashMap<usize, Vec<usize>> = FxHashMap::default();
-    for face in 0..samples.faces.len() {
-        if let Some(first) = of_face(face).next() {
-            parts.entry(root(&mut part_of, first)).or_default().push(face);
-        }
-    }
-    let mut parts: Vec<Vec<usize>> = parts.into_values().collect();
-    parts.sort_unstable();
-    parts
 }

@@ -27,7 +27,7 @@ pub(super) fn run(
     let mut lines = Lines::aim(mesh, vertices, target, missed);
     let system = (method == Method::Solve).then(|| lines.system()).flatten();
     let limit = if method == Method::Loop { LOOP_STEPS } else { SOLVE_STEPS };
-    let mut outcome = Outcome { steps: 0, stop: Stop::StepLimit, residual: 0.0, held: 0 };
+    let mut outcome = Outcome { steps: 0, stop: Stop::StepLimit, residual: 0.0, held: 0, is_clear: false };
     for step in 0..=limit {
         job.step("fit", f64::from(step) / f64::from(limit + 1))?;
         (outcome.steps, outcome.residual) = (step, lines.measure(mesh, target));

@@ -10,11 +10,14 @@ mod assembly;
 mod curves;
 mod freedom;
 mod guard;
+mod judge;
 mod linear;
 mod lines;
+mod parts;
 mod rim;
 mod samples;
 mod surface_fit;
+mod walk;
 
 pub use curves::SharpCurves;
 pub(crate) use curves::evaluate as evaluate_b_spline;
@@ -22,13 +25,16 @@ pub(crate) use linear::{LeastSquares, Row};
 
 use crate::job::{Cancelled, Job};
 use crate::mesh::{FaceId, Mesh, VertexId};
+use crate::subdivision::basis::Rule;
 use crate::surface::{FreezeError, LimitSurface};
 use curves::is_on_curve;
 use freedom::freedom;
+use judge::Judge;
 use rim::fit_rim;
 use samples::Samples;
 use serde::Serialize;
 use surface_fit::SurfaceFit;
+use walk::Beside;
 
 /// How to fit.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Serialize)]
@@ -38,7 +44,7 @@ pub enum Method {
     None,
     /// The paper's iteration.
     Loop,
-    /// The sparse system the iteration converges to (default).
+    /// The sparse system the iteration converges to.
     Solve,
     /// Least squares of distance and slope over samples of the surface; vertices move along the normal.
     Fit,
@@ -137,6 +143,8 @@ const TOLERANCE: f64 = 1e-7;
 pub struct Target {
     /// The surface.
     pub surface: LimitSurface,
+    /// How its quads lie beside each other.
+    beside: Beside,
     /// Its boundary and creases.
     pub curves: SharpCurves,
     /// Vertices below this number were there when it was frozen.
@@ -158,6 +166,7 @@ impl Target {
         }
         Ok(Self {
             surface: LimitSurface::around_with(mesh, faces, job)?,
+            beside: Beside::new(mesh, faces),
             curves: SharpCurves::around(mesh, faces),
             vertices: mesh.vertex_bound(),
             reach: 2.0 * sum / f64::from(count.max(1)),
@@ -205,13 +214,14 @@ pub fn fit(
         active.iter().partition(|&&v| is_on_curve(mesh, v));
     // Where the surface ends before the boundary, vertices of the boundary have no point on it.
     inner.retain(|&v| !mesh.is_boundary_vertex(v));
+    let judge = (method == Method::FitSlide).then(|| Judge::new(mesh, active, target, SLOPE_SLIDING));
     // The limit of a vertex on a sharp curve depends on such vertices only, so the rim comes first.
     let (rim_steps, rim_gap) = fit_rim(mesh, &rim, target, method, job)?;
     let mut missed = Vec::new();
     let outcome = match method {
         Method::None | Method::Loop | Method::Solve => {
             // Beyond the active vertices the frozen surface may end.
-            let mut samples = Samples::new(mesh, active, target, 1, SLOPE, false, false);
+            let mut samples = Samples::new(mesh, active, target, Rule::Gauss(1), SLOPE, false, false);
             guard::guarded(mesh, &inner, &mut samples, job, |mesh, strikes, samples| {
                 missed.clear();
                 let free: Vec<VertexId> =
@@ -234,7 +244,7 @@ pub fn fit(
             }
             let slope = if slide { SLOPE_SLIDING } else { SLOPE };
             // Along normals alone curvature can hardly be kept: nearly everything would be held.
-            let mut samples = Samples::new(mesh, &inner, target, ORDER, slope, true, slide);
+            let mut samples = Samples::new(mesh, &inner, target, Rule::Gauss(ORDER), slope, true, slide);
             guard::guarded(mesh, &inner, &mut samples, job, |mesh, strikes, samples| {
                 SurfaceFit::new(mesh, &freedoms, strikes, samples, job).run(mesh)
             })?
@@ -244,6 +254,10 @@ pub fn fit(
     report.steps = outcome.steps.max(rim_steps);
     report.residual = outcome.residual.max(rim_gap);
     report.held = outcome.held;
+    // Moved rims were not seen by the samples of the fit.
+    if let Some(judge) = judge.filter(|_| !outcome.is_clear || rim_steps > 0) {
+        report.held = report.held.max(judge.settle(mesh, job)?.len());
+    }
     missed.sort_unstable();
     report.missed = missed;
     Ok(report)

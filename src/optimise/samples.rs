@@ -1,9 +1,10 @@
 //! Samples of the surface that a fit can move, and how far they are from the frozen surface.
 
+use super::walk::Start;
 use super::{TOLERANCE, Target};
 use crate::job::{Cancelled, Job};
 use crate::mesh::{FaceId, Mesh, VertexId};
-use crate::subdivision::basis::{Control, Place, Table, Tables};
+use crate::subdivision::basis::{Control, Place, Rule, Table, Tables};
 use crate::subdivision::{SurfacePoint, has_limit};
 use crate::surface::{ClosestOptions, Facing, Foot, Hit};
 use glam::DVec3;
@@ -16,6 +17,9 @@ const WORSE: f64 = 4.0;
 
 /// What is above by less than this factor is not worse, but rounding.
 const MARGIN: f64 = 1.0 + 1e-6;
+
+/// Curvature gains clearly where its mean square change falls to this part: to a half in rms.
+const CLEAR: f64 = 0.25;
 
 /// Faces with more corners, and at vertices with more edges, are not sampled: too many control vertices for the little
 /// that a sample says about each.
@@ -104,13 +108,13 @@ pub(super) struct Samples<'a> {
 }
 
 impl<'a> Samples<'a> {
-    /// At most `order` x `order` samples on each face whose surface moves with `vertices`, which are ascending; only on
+    /// Samples by `rule` on each face whose surface moves with `vertices`, which are ascending; only on
     /// faces between them, unless `beyond`. Changes of curvature count as errors if `has_curvature`.
     pub(super) fn new(
         mesh: &Mesh,
         vertices: &[VertexId],
         target: &'a Target,
-        order: usize,
+        rule: Rule,
         slope: f64,
         beyond: bool,
         has_curvature: bool,
@@ -121,7 +125,7 @@ impl<'a> Samples<'a> {
         around.sort_unstable();
         around.dedup();
         // A vertex moves the surface of the faces round its faces too.
-        let (mut tables, mut faces, mut count) = (Tables::new(order), Vec::new(), 0);
+        let (mut tables, mut faces, mut count) = (Tables::new(rule), Vec::new(), 0);
         for face in mesh.grow_faces(&around).into_iter().filter(|&face| has_limit(mesh, face)) {
             if is_large(mesh, face) || !(beyond || is_between(face)) {
                 continue;
@@ -183,6 +187,15 @@ impl<'a> Samples<'a> {
         }
     }
 
+    /// True when the change of curvature of the faces with these numbers is clearly less than it was.
+    pub(super) fn is_clear(&self, before: &Snapshot, faces: &[usize]) -> bool {
+        let bend = |error: &Error| error.bend;
+        let now: f64 = faces.iter().map(|&k| bend(&self.faces[k].error)).sum();
+        let was: f64 = faces.iter().map(|&k| bend(&before.errors[k])).sum();
+        let area = faces.iter().map(|&k| self.faces[k].area).sum();
+        now <= (CLEAR * was).max(self.rounding(area).bend)
+    }
+
     /// True when the surface of the faces with these numbers is further from the frozen one than it was.
     pub(super) fn is_worse(&self, before: &Snapshot, faces: &[usize]) -> bool {
         let sum = |error: &dyn Fn(usize) -> Error| {
@@ -231,11 +244,13 @@ impl<'a> Samples<'a> {
                 }
                 let before = &self.samples[face.first + k];
                 let search = match before.foot {
-                    Some(foot) => Search { start: foot, radius: diameter.min(self.target.reach) },
+                    Some(foot) => Search { start: foot.into(), radius: diameter.min(self.target.reach) },
                     // What was not found once is not looked for again.
-                    None if self.is_evaluated => Search { start: same_place(face.face, place), radius: 0.0 },
+                    None if self.is_evaluated => {
+                        Search { start: same_place(mesh, face.face, place), radius: 0.0 }
+                    }
                     None => Search {
-                        start: last.unwrap_or_else(|| same_place(face.face, place)),
+                        start: last.map_or_else(|| same_place(mesh, face.face, place), Start::from),
                         radius: diameter.min(self.target.reach),
                     },
                 };
@@ -265,11 +280,10 @@ impl<'a> Samples<'a> {
     fn sample(&self, jet: [DVec3; 6], share: f64, search: Search) -> (Sample, f64) {
         let [point, du, dv, uu, uv, vv] = jet;
         let cross = du.cross(dv);
-        let (foot, area) = (self.find_foot(search, point, cross), cross.length() * share);
+        let (found, area) = (self.find_foot(search, point, cross), cross.length() * share);
         let (mut factors, mut slopes, mut turns) = ([0.0; 2], [DVec3::ZERO; 2], [DVec3::ZERO; 2]);
         let mut bend = 0.0;
-        let there =
-            foot.and_then(|foot| self.target.surface.evaluate(foot.face, foot.corner, foot.u, foot.v));
+        let (foot, there) = found.unzip();
         if let Some(there) = there {
             let weight = self.slope * there.du.cross(there.dv).length().sqrt();
             for (k, tangent) in [du, dv].into_iter().enumerate() {
@@ -290,45 +304,48 @@ impl<'a> Samples<'a> {
         (Sample { foot, has_target: false, area, factors, slopes, turns }, bend)
     }
 
-    /// The foot of a sample with a normal on the side of `direction`.
-    fn find_foot(&self, search: Search, point: DVec3, direction: DVec3) -> Option<Hit> {
-        let surface = &self.target.surface;
+    /// The foot of a sample with a normal on the side of `direction`, and the frozen surface there.
+    fn find_foot(&self, search: Search, point: DVec3, direction: DVec3) -> Option<(Hit, SurfacePoint)> {
+        let (surface, beside) = (&self.target.surface, &self.target.beside);
         let Search { start, radius } = search;
-        let is_fit = |foot: &Foot| foot.normal.dot(direction) > 0.0 && foot.distance < radius;
-        let along_line = || {
-            let hit = surface.nearest_line_hit(point, direction.normalize_or_zero(), radius, direction)?;
-            surface
-                .foot_near(hit.face, hit.corner, hit.u, hit.v, point)
-                .filter(|foot| foot.distance <= hit.s.abs())
-        };
-        let anywhere = || {
-            let facing = Some(Facing { normal: direction, min_cosine: 0.0 });
-            surface.closest(point, &ClosestOptions { radius, facing })
-        };
         if radius <= 0.0 {
             return None;
         }
-        let foot = surface
-            .foot_near(start.face, start.corner, start.u, start.v, point)
+        let away = |found: &(Hit, SurfacePoint)| found.0.position.distance(point);
+        let is_fit =
+            |found: &(Hit, SurfacePoint)| found.0.normal.dot(direction) > 0.0 && away(found) < radius;
+        let along_line = || {
+            let hit = surface.nearest_line_hit(point, direction.normalize_or_zero(), radius, direction)?;
+            beside.follow(surface, hit.into(), point).filter(|found| away(found) <= hit.s.abs())
+        };
+        let anywhere = || {
+            let facing = Some(Facing { normal: direction, min_cosine: 0.0 });
+            let foot = surface.closest(point, &ClosestOptions { radius, facing })?;
+            let Foot { face, corner, u, v, position, normal, .. } = foot;
+            let s = (position - point).dot(normal);
+            let there = surface.evaluate(face, corner, u, v)?;
+            Some((Hit { face, corner, u, v, s, position, normal }, there))
+        };
+        beside
+            .follow(surface, start, point)
             .filter(is_fit)
             .or_else(|| along_line().filter(is_fit))
-            .or_else(anywhere)?;
-        let s = (foot.position - point).dot(foot.normal);
-        let (face, corner, u, v) = (foot.face, foot.corner, foot.u, foot.v);
-        Some(Hit { face, corner, u, v, s, position: foot.position, normal: foot.normal })
+            .or_else(anywhere)
     }
 }
 
 /// Where a foot is looked for first, and how far away it may be.
 struct Search {
-    start: Hit,
+    start: Start,
     radius: f64,
 }
 
-/// Where a face that was not changed has its foot, as a start for the search.
-fn same_place(face: FaceId, place: Place) -> Hit {
+/// Where a sample has its foot, if not far from there: its own place on a face that was there, the middle of the face that
+/// became a new one.
+fn same_place(mesh: &Mesh, face: FaceId, place: Place) -> Start {
+    let was = mesh.original_face(face);
     let Place { patch, u, v, .. } = place;
-    Hit { face, corner: patch, u, v, s: 0.0, position: DVec3::ZERO, normal: DVec3::ZERO }
+    if was == face { Start { face, corner: patch, u, v } } else { Start::middle(was) }
 }
 
 /// Mean curvature from first and second derivatives.

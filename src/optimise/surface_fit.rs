@@ -14,6 +14,8 @@ use super::samples::{Sampled, Samples};
 use crate::fault;
 use crate::job::{Cancelled, Job};
 use crate::mesh::{Mesh, VertexId};
+use faer::linalg::matmul::triangular::{self, BlockStructure};
+use faer::{Accum, MatMut, MatRef, Par};
 use glam::DVec3;
 use rustc_hash::FxHashMap;
 use smallvec::SmallVec;
@@ -29,8 +31,8 @@ const STRIKE: f64 = 300.0;
 const RESTRAINT: f64 = 10.0;
 /// Solutions with grown costs at most per step.
 const RESTRAINTS: u32 = 4;
-/// Solutions at most; two are enough nearly everywhere.
-const STEPS: u32 = 4;
+/// Solutions at most; more change nearly nothing.
+const STEPS: u32 = 2;
 /// The fit ends when a solution leaves more than this part of the error.
 const GAIN: f64 = 0.98;
 
@@ -98,7 +100,7 @@ impl<'a, 'b> SurfaceFit<'a, 'b> {
             }
             error = now;
         }
-        Ok(Outcome { steps, stop, residual: self.samples.residual(), held: 0 })
+        Ok(Outcome { steps, stop, residual: self.samples.residual(), held: 0, is_clear: false })
     }
 
     /// The step after `shifts` that lets no vertex of a face that became worse slide too far.
@@ -138,7 +140,9 @@ impl<'a, 'b> SurfaceFit<'a, 'b> {
     fn assemble(&mut self, shifts: &[f64]) -> Result<f64, Cancelled> {
         self.system.clear();
         let mut area = 0.0;
-        let (mut columns, mut matrix, mut vector, mut row) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
+        let (mut columns, mut matrix, mut vector) = (Vec::new(), Vec::new(), Vec::new());
+        // The equations of a face, each times the root of its weight, and their right-hand sides.
+        let (mut equations, mut rights) = (Vec::new(), Vec::new());
         for (index, (face, groups)) in self.samples.faces.iter().zip(&self.groups).enumerate() {
             if index % 64 == 0 && self.job.is_cancelled() {
                 return Err(Cancelled);
@@ -150,40 +154,47 @@ impl<'a, 'b> SurfaceFit<'a, 'b> {
                     columns.extend(self.freedoms[group as usize].1.iter().map(|&direction| (i, direction)));
                 }
             }
-            let count = columns.len();
-            for (array, length) in [(&mut matrix, count * count), (&mut vector, count), (&mut row, count)] {
-                array.clear();
-                array.resize(length, 0.0);
+            if columns.is_empty() {
+                continue;
             }
-            let samples = self.samples.of_face(face);
-            for (sample, (_, weights)) in samples.iter().zip(face.table.samples()) {
+            equations.clear();
+            rights.clear();
+            for (sample, (_, weights)) in self.samples.of_face(face).iter().zip(face.table.samples()) {
                 let Some(foot) = sample.foot else { continue };
                 area += sample.area;
-                let n = foot.normal;
-                for part in 0..3 {
-                    let right = if part == 0 {
-                        for (value, &(i, direction)) in row.iter_mut().zip(&columns) {
-                            *value = weights[i][0] * n.dot(direction);
-                        }
-                        foot.s
-                    } else {
-                        let k = part - 1;
-                        let (factor, turn) = (sample.factors[k], sample.turns[k]);
-                        for (value, &(i, direction)) in row.iter_mut().zip(&columns) {
-                            *value = factor * weights[i][part] * n.dot(direction)
-                                - weights[i][0] * turn.dot(direction);
-                        }
-                        -n.dot(sample.slopes[k])
-                    };
-                    for (a, &value) in row.iter().enumerate() {
-                        let scaled = value * sample.area;
-                        vector[a] += scaled * right;
-                        let line = &mut matrix[a * count..=a * count + a];
-                        line.iter_mut().zip(&row).for_each(|(sum, &x)| *sum += scaled * x);
-                    }
+                let root = sample.area.sqrt();
+                let n = foot.normal * root;
+                equations.extend(columns.iter().map(|&(i, direction)| weights[i][0] * n.dot(direction)));
+                rights.push(foot.s * root);
+                for k in 0..2 {
+                    let (normal, turn) = (n * sample.factors[k], sample.turns[k] * root);
+                    equations.extend(columns.iter().map(|&(i, direction): &(usize, DVec3)| {
+                        (normal * weights[i][k + 1] - turn * weights[i][0]).dot(direction)
+                    }));
+                    rights.push(-n.dot(sample.slopes[k]));
                 }
             }
-            self.system.add_block(groups, &matrix, &vector);
+            let (count, rows) = (columns.len(), rights.len());
+            vector.clear();
+            vector.resize(count, 0.0);
+            for (row, right) in equations.chunks_exact(count).zip(&rights) {
+                vector.iter_mut().zip(row).for_each(|(sum, x)| *sum += right * x);
+            }
+            matrix.resize(count * count, 0.0);
+            let transposed = MatRef::from_column_major_slice(&equations, count, rows);
+            // Row by row, the lower triangle is the upper one of the columns.
+            triangular::matmul(
+                MatMut::from_column_major_slice_mut(&mut matrix, count, count),
+                BlockStructure::TriangularUpper,
+                Accum::Replace,
+                transposed,
+                BlockStructure::Rectangular,
+                transposed.transpose(),
+                BlockStructure::Rectangular,
+                1.0,
+                Par::Seq,
+            );
+            self.system.add_block(index, groups, &matrix, &vector);
         }
         // As much cost per vertex as the samples weigh in the mean.
         let share = area / self.freedoms.len().max(1) as f64;

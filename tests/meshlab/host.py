@@ -122,7 +122,7 @@ def feature(name, lengths, marks="selectors", selectors="", polygon_file="", str
     parameters += [
         enum("marks", MARKS.index(marks), 5),
         parameter("String", "selectors", selectors),
-        enum("fit", 2, 5),
+        enum("fit", 4, 5),
         enum("parity", 0, 3),
         parameter("Bool", "strict", str(strict).lower()),
         enum("boundary", 0, 3),

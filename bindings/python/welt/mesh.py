@@ -158,7 +158,7 @@ class Mesh(Elements):
         features: Union[str, Rules],
         settings: Settings = "",
         *,
-        fit: str = "solve",
+        fit: str = "surface_slide",
         parity: str = "auto",
         strict: bool = False,
         deviation: bool = False,
@@ -206,7 +206,7 @@ class Mesh(Elements):
         self,
         surface: Surface,
         vertices: Optional[ArrayLike] = None,
-        method: str = "solve",
+        method: str = "surface_slide",
         *,
         job: Optional[Job] = None,
     ) -> Dict[str, Any]:

@@ -17,7 +17,7 @@ except ImportError:
 
 translate = FreeCAD.Qt.translate
 
-FITS = {"Solve": "solve", "Surface": "surface", "Surface, sliding": "surface_slide", "Loop": "loop", "None": "none"}
+FITS = {"Surface, sliding": "surface_slide", "Surface": "surface", "Solve": "solve", "Loop": "loop", "None": "none"}
 PARITIES = {"Automatic": "auto", "All quads": "all_quad", "Local": "local"}
 
 
