@@ -159,7 +159,7 @@ impl Beside {
                 _ => return None,
             };
             let length = step.abs().max_element();
-            if !(length < LONGEST) {
+            if length.is_nan() || length >= LONGEST {
                 return None;
             }
             place = self.inside(Start { u: place.u - step.x, v: place.v - step.y, ..place })?;
