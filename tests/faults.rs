@@ -235,9 +235,10 @@ fn no_memory_leaves_the_file_that_was_there() {
                 run.fails(1, &["no memory for a list of ", "ask for less, or free memory"]);
                 assert_eq!(content, b"precious");
             }
-            _ => {
+            // The runtime of the program, or before its first line the system.
+            code => {
                 ended += 1;
-                assert_eq!(run.code, ENDED, "{}", run.err);
+                assert!(code == ENDED || run.err.contains("loading shared libraries"), "{code}: {}", run.err);
                 assert_eq!(content, b"precious", "{megabytes} MiB: {}", run.err);
             }
         }
