@@ -355,7 +355,7 @@ typedef struct {
      */
     uint32_t struct_size;
     /*
-     How the changed mesh is fitted to the surface as it was: one of WELT_FIT_*. Default WELT_FIT_SOLVE.
+     How the changed mesh is fitted to the surface as it was: one of WELT_FIT_*. Default WELT_FIT_SURFACE_SLIDE.
      */
     uint32_t fit;
     /*
@@ -509,7 +509,7 @@ typedef struct {
     uint32_t neighbour_sides[4];
     /*
      Per corner, at which side of the same number begins, not 0 where an extraordinary vertex lies there: in the last
-     two spans beside it the patch is an approximation. Everywhere else it is the limit surface itself.
+     three spans beside it the patch is an approximation. Everywhere else it is the limit surface itself.
      */
     uint32_t irregular[4];
     /*
