@@ -2,7 +2,6 @@
 
 use super::Target;
 use super::lines::{apply, foot_normal};
-use super::walk::Start;
 use crate::mesh::{HalfEdgeId, Mesh, VertexId};
 use crate::subdivision::{limit_mask, vertex_normal};
 use glam::DVec3;
@@ -14,29 +13,13 @@ pub(super) type Freedom = SmallVec<[DVec3; 3]>;
 /// What `v` may do; `None` when it finds no surface.
 pub(super) fn freedom(mesh: &Mesh, v: VertexId, target: &Target, slide: bool) -> Option<Freedom> {
     let point = apply(mesh, &limit_mask(mesh, v));
-    let normal =
-        near_normal(mesh, v, target, point).or_else(|| foot_normal(target, point, vertex_normal(mesh, v)))?;
+    let normal = foot_normal(target, point, vertex_normal(mesh, v))?;
     let mut freedom = Freedom::from_slice(&[normal]);
     if slide {
         freedom.extend(sliding(mesh, v, normal, target.vertices));
     }
     Some(freedom)
 }
-
-/// The normal at the foot of the limit point of `v` found from the faces beside it.
-fn near_normal(mesh: &Mesh, v: VertexId, target: &Target, point: DVec3) -> Option<DVec3> {
-    let direction = vertex_normal(mesh, v)?;
-    let face = mesh.outgoing(v).map(|h| mesh.face(h)).find(|face| !face.is_boundary())?;
-    let start = Start::middle(mesh.original_face(face));
-    let (foot, _) = target.beside.follow(&target.surface, start, point)?;
-    (foot.position.distance(point) < NEAR * target.reach && foot.normal.dot(direction) > LEAST_COSINE)
-        .then_some(foot.normal)
-}
-
-/// Farther feet, as a share of the reach, are looked for everywhere.
-const NEAR: f64 = 0.05;
-/// So are feet whose normals differ by more than 60 degrees.
-const LEAST_COSINE: f64 = 0.5;
 
 /// Longest row of new vertices on an old edge that is followed.
 const MOST_LINES: usize = 64;

@@ -236,7 +236,6 @@ impl<'a> Samples<'a> {
             let (mut error, mut area) = (Error::default(), 0.0);
             let corners = || positions.iter().take(mesh.arity(face.face));
             let diameter = corners().flat_map(|a| corners().map(move |b| a.distance(*b))).fold(0.0, f64::max);
-            let mut last = None;
             for (k, (place, weights)) in face.table.samples().enumerate() {
                 let mut jet = [DVec3::ZERO; 6];
                 for (&p, w) in positions.iter().zip(weights) {
@@ -247,10 +246,10 @@ impl<'a> Samples<'a> {
                     Some(foot) => Search { start: foot.into(), radius: diameter.min(self.target.reach) },
                     // What was not found once is not looked for again.
                     None if self.is_evaluated => {
-                        Search { start: same_place(mesh, face.face, place), radius: 0.0 }
+                        Search { start: self.same_place(mesh, face.face, place), radius: 0.0 }
                     }
                     None => Search {
-                        start: last.map_or_else(|| same_place(mesh, face.face, place), Start::from),
+                        start: self.same_place(mesh, face.face, place),
                         radius: diameter.min(self.target.reach),
                     },
                 };
@@ -267,13 +266,21 @@ impl<'a> Samples<'a> {
                     error = error.plus(here.map(|square| square * sample.area));
                     area += sample.area;
                 }
-                last = sample.foot.or(last);
                 self.samples[face.first + k] = sample;
             }
             (self.faces[index].error, self.faces[index].area) = (error, area);
         }
         self.is_evaluated = true;
         Ok(())
+    }
+
+    /// Where a sample has its foot, if not far from there: its own place on a face that was there, the middle of the face
+    /// that was there where rules made new ones. Which of those took its number is nothing to go by.
+    fn same_place(&self, mesh: &Mesh, face: FaceId, place: Place) -> Start {
+        let Place { patch, u, v, .. } = place;
+        let was = mesh.original_face(face);
+        let is_old = was == face && mesh.face_vertices(face).all(|v| (v.0 as usize) < self.target.vertices);
+        if is_old { Start { face, corner: patch, u, v } } else { Start::middle(was) }
     }
 
     /// A sample, and its square change of mean curvature.
@@ -338,14 +345,6 @@ impl<'a> Samples<'a> {
 struct Search {
     start: Start,
     radius: f64,
-}
-
-/// Where a sample has its foot, if not far from there: its own place on a face that was there, the middle of the face that
-/// became a new one.
-fn same_place(mesh: &Mesh, face: FaceId, place: Place) -> Start {
-    let was = mesh.original_face(face);
-    let Place { patch, u, v, .. } = place;
-    if was == face { Start { face, corner: patch, u, v } } else { Start::middle(was) }
 }
 
 /// Mean curvature from first and second derivatives.
