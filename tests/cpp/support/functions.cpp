@@ -203,7 +203,7 @@ void features() {
     ADD(welt_rules_apply, "rrrooooo", {w.mesh(), w.selection(), w.rules(), "", SIZE_MAX, w.feature_options(), w.job(),
         &w.out.report, &w.out.error});
     ADD(welt_mesh_displace, "rrro", {w.mesh(), some_vertices, heights, 2, &w.out.error});
-    ADD(welt_mesh_fit, "rorooo", {w.mesh(), some_vertices, 2, w.surface(), WELT_FIT_SOLVE, w.job(), &w.out.report,
+    ADD(welt_mesh_fit, "rorooo", {w.mesh(), some_vertices, 2, w.surface(), WELT_FIT_SURFACE_SLIDE, w.job(), &w.out.report,
         &w.out.error});
 }
 
