@@ -15,6 +15,10 @@ const FAR: f64 = 0.05;
 /// A hit this many times as far away as the closest point is not taken.
 const GRAZING: f64 = 2.0;
 
+/// Every so many steps the largest distance must have fallen to this part of what it was, or the rest is left.
+const LOOK_BACK: u32 = 10;
+const GAIN: f64 = 0.9;
+
 /// Moves `vertices` by [`Method::Loop`] or [`Method::Solve`]; those that find no surface go to `missed`.
 pub(super) fn run(
     mesh: &mut Mesh,
@@ -28,12 +32,19 @@ pub(super) fn run(
     let system = (method == Method::Solve).then(|| lines.system()).flatten();
     let limit = if method == Method::Loop { LOOP_STEPS } else { SOLVE_STEPS };
     let mut outcome = Outcome { steps: 0, stop: Stop::StepLimit, residual: 0.0, held: 0, is_clear: false };
+    let mut before = f64::INFINITY;
     for step in 0..=limit {
         job.step("fit", f64::from(step) / f64::from(limit + 1))?;
         (outcome.steps, outcome.residual) = (step, lines.measure(mesh, target));
         if outcome.residual <= TOLERANCE * target.reach {
             outcome.stop = Stop::Converged;
             break;
+        }
+        if step % LOOK_BACK == 0 {
+            if outcome.residual > GAIN * before {
+                break;
+            }
+            before = outcome.residual;
         }
         if step < limit {
             lines.advance(mesh, system.as_ref());

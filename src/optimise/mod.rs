@@ -100,7 +100,7 @@ pub enum Stop {
     Nothing,
     /// Every limit point is closer to the frozen surface than the tolerance.
     Converged,
-    /// The allowed number of steps was taken.
+    /// The allowed number of steps was taken, or as many as came closer.
     StepLimit,
 }
 

@@ -61,7 +61,7 @@ enum class Places { few, sample, all } places = Places::sample;
 std::uint64_t next(std::uint64_t n) {
     switch (places) {
     case Places::few: return 2 * n + n / 2;
-    case Places::sample: return n < 40 ? n + 1 : n + n / 8;
+    case Places::sample: return n < 16 ? n + 1 : n + n / 4;
     default: return n + 1;
     }
 }

@@ -77,7 +77,7 @@ impl<'m> Case<'m> {
         }
         let request = Request::features(&features, &settings).ok()?;
         let options = Options {
-            method: random.pick(&[Method::None, Method::None, Method::Solve]),
+            method: random.pick(&[Method::None, Method::None, Method::Solve, Method::FitSlide]),
             parity: random.pick(&[Mode::Auto, Mode::AllQuad, Mode::Local]),
             strict: random.once_in(10),
             ..Options::default()

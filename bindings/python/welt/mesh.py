@@ -210,7 +210,7 @@ class Mesh(Elements):
         *,
         job: Optional[Job] = None,
     ) -> Dict[str, Any]:
-        """Moves vertices (0-based; None for all) so that their limit points lie on a frozen surface; gives the report."""
+        """Moves vertices (0-based; None for all) so that the surface comes close to a frozen one; gives the report."""
         given = None if vertices is None else arrays.indices(vertices, 1, "vertices")
         count = 0 if given is None else given.count
         pointer = arrays.pointer_or_null(given)

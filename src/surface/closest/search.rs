@@ -80,6 +80,10 @@ impl<'a> Search<'a> {
     /// True when nothing at this distance or farther is wanted. What gave the bound may have been evaluated in another
     /// way than the feet, and have other errors: it excludes only what is farther by more than these.
     pub(super) fn hopeless(&self, at_least: f64) -> bool {
+        // From very far away all points are equally close, and nothing else would end the search early.
+        if self.found.is_some() && self.rounding() > self.surface.size {
+            return true;
+        }
         let bound = self.bound * (1.0 + 4.0 * f64::EPSILON) + self.surface.tolerance;
         at_least > bound.min(self.best + self.rounding())
     }
