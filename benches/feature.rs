@@ -10,6 +10,7 @@ use welt::feature::{self, Options, Report, Request};
 use welt::job::Job;
 use welt::mark::{Selection, Selector};
 use welt::mesh::{Mesh, Polygons};
+use welt::optimise::Method;
 
 const RUNS: usize = 9;
 
@@ -30,9 +31,9 @@ fn torus(n: u32, m: u32) -> Polygons {
     polygons
 }
 
-fn measure(name: &str, polygons: &Polygons, marks: &[String]) {
+fn measure(name: &str, method: Method, polygons: &Polygons, marks: &[String]) {
     let request = Request::features(&["groove"], &["width=30%", "depth=10%"]).expect("a request");
-    let options = Options::default();
+    let options = Options { method, ..Options::default() };
     let mut runs: Vec<(f64, Report)> = (0..RUNS)
         .map(|_| {
             let mut mesh = Mesh::from_polygons(polygons).expect("a mesh");
@@ -48,15 +49,30 @@ fn measure(name: &str, polygons: &Polygons, marks: &[String]) {
     runs.sort_by(|a, b| a.0.total_cmp(&b.0));
     let (milliseconds, report) = &runs[RUNS / 2];
     let stages: Vec<String> = report.times.iter().map(|(stage, ms)| format!("{stage} {ms:.2}")).collect();
-    println!("{name:<34}{:>6} marks {milliseconds:>9.2} ms   ({})", report.marks, stages.join(", "));
+    println!(
+        "{name:<30}{:<10}{:>6} marks {milliseconds:>9.2} ms   ({})",
+        method.name(),
+        report.marks,
+        stages.join(", ")
+    );
 }
 
 fn main() {
-    let chair = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/models/mid_century_chair.obj");
-    let chair = welt::io::import(&chair, &welt::io::ImportOptions::default()).expect("the chair").mesh;
-    measure("chair of 1142 faces", &chair.to_polygons(), &["ring:240,262".into()]);
+    let models = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/models");
+    let methods = [Method::None, Method::Solve, Method::FitSlide];
+    for (name, ring) in [("mid_century_chair", "ring:240,262"), ("leaf_chair", "ring:3,331")] {
+        let file = models.join(name).with_extension("obj");
+        let chair = welt::io::import(&file, &welt::io::ImportOptions::default()).expect("the chair").mesh;
+        let name = format!("chair of {} faces", chair.face_bound());
+        for method in methods {
+            measure(&name, method, &chair.to_polygons(), &[ring.into()]);
+        }
+    }
     for m in [50, 500, 5000] {
-        measure(&format!("torus of {} faces", 200 * m), &torus(200, m), &["ring:0,200".into()]);
+        let name = format!("torus of {} faces", 200 * m);
+        for method in methods {
+            measure(&name, method, &torus(200, m), &["ring:0,200".into()]);
+        }
     }
     // 1,000 marks: five rings; then a hundred bands of ten that end in the open, so that 200 faces are odd.
     let rings: Vec<String> = (0..5).map(|j| format!("ring:{},{}", 2000 * j, 2000 * j + 200)).collect();
@@ -66,7 +82,7 @@ fn main() {
         .collect();
     for m in [50, 5000] {
         let polygons = torus(200, m);
-        measure(&format!("five rings in {} faces", 200 * m), &polygons, &rings);
-        measure(&format!("100 bands in {} faces", 200 * m), &polygons, &bands);
+        measure(&format!("five rings in {} faces", 200 * m), Method::FitSlide, &polygons, &rings);
+        measure(&format!("100 bands in {} faces", 200 * m), Method::FitSlide, &polygons, &bands);
     }
 }

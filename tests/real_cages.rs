@@ -183,6 +183,9 @@ impl Row {
     }
 }
 
+/// How much more a surface may be curved than without a fit, in rms: feet of the report and of the fit differ by rounding.
+const BENT: f64 = 1e-3;
+
 #[test]
 fn depth_zero_leaves_the_surface_where_it_was() {
     let Some(data) = common::shared_data() else { return };
@@ -195,6 +198,8 @@ fn depth_zero_leaves_the_surface_where_it_was() {
         assert!(quantile(&row.curvature, 0.5) < 1.0, "{}", row.method.name());
         assert!(row.closer[1][0] > 0.85, "{}: {}", row.method.name(), row.closer[1][0]);
     }
+    let most_bent = rows[2].curvature.iter().copied().fold(0.0, f64::max);
+    assert!(most_bent <= 1.0 + BENT, "the default makes ripples: {most_bent}");
 }
 
 /// Where rings cross and where bands end in T-junctions, `fit+slide` ends no further from the surface than an
@@ -216,6 +221,8 @@ fn junctions_of_depth_zero_are_no_worse_than_without_a_fit() {
                 if none.rms > 1e-3 * marked.edge {
                     println!("{name}: {:.3e} {:.3e}", none.rms, fitted.rms);
                     assert!(fitted.rms < 1.05 * none.rms, "{name}: {} {}", fitted.rms, none.rms);
+                    let bent = fitted.curvature_rms / none.curvature_rms;
+                    assert!(bent <= 1.0 + BENT, "{name}: ripples, {bent}");
                     closer.push(none.rms / fitted.rms);
                 }
             }
