@@ -32,11 +32,13 @@ pub(super) struct Outcome {
 }
 
 /// Runs `fit`, which moves vertices of `free`, and again with those held that strikes name as long as some faces are
-/// worse than at the start. It gets samples that are evaluated at the positions of the mesh, and leaves them so.
+/// worse than at the start. It gets samples that are evaluated at the positions of the mesh, and leaves them so. `in_degrees`
+/// says that it holds a vertex the more the more strikes it has.
 pub(super) fn guarded<'a>(
     mesh: &mut Mesh,
     free: &[VertexId],
     samples: &mut Samples<'a>,
+    in_degrees: bool,
     job: &Job,
     mut fit: impl FnMut(&mut Mesh, &Strikes, &mut Samples<'a>) -> Result<Outcome, Cancelled>,
 ) -> Result<Outcome, Cancelled> {
@@ -55,6 +57,10 @@ pub(super) fn guarded<'a>(
             worse.iter().flat_map(|&k| mesh.face_vertices(samples.faces[k].face)).collect();
         struck.sort_unstable();
         struck.dedup();
+        // The same once more would come to the same.
+        if !in_degrees && struck.iter().all(|v| strikes.contains_key(v)) {
+            break outcome;
+        }
         struck.into_iter().for_each(|v| *strikes.entry(v).or_default() += 1);
         free.iter().zip(&start).for_each(|(&v, &position)| mesh.set_position(v, position));
         samples.restore(&before, 0..before.errors.len());

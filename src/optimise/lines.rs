@@ -19,6 +19,9 @@ const GRAZING: f64 = 2.0;
 const LOOK_BACK: u32 = 10;
 const GAIN: f64 = 0.9;
 
+/// A vertex whose line met nothing so often stays where it is.
+const MISSES: u32 = 5;
+
 /// Moves `vertices` by [`Method::Loop`] or [`Method::Solve`]; those that find no surface go to `missed`.
 pub(super) fn run(
     mesh: &mut Mesh,
@@ -66,6 +69,8 @@ struct Lines {
     hits: Vec<Option<Hit>>,
     /// True where neither line nor closest point found the frozen surface at the last measurement.
     nothing: Vec<bool>,
+    /// How often the line met nothing.
+    misses: Vec<u32>,
 }
 
 impl Lines {
@@ -83,6 +88,7 @@ impl Lines {
             gaps: Vec::new(),
             hits: Vec::new(),
             nothing: Vec::new(),
+            misses: Vec::new(),
         };
         for &v in vertices {
             let mask = limit_mask(mesh, v);
@@ -98,6 +104,7 @@ impl Lines {
         lines.gaps = vec![0.0; lines.vertices.len()];
         lines.hits = vec![None; lines.vertices.len()];
         lines.nothing = vec![false; lines.vertices.len()];
+        lines.misses = vec![0; lines.vertices.len()];
         lines
     }
 
@@ -129,7 +136,10 @@ impl Lines {
                 self.hits[i] = None;
             }
             let gap = self.hits[i].map(|hit| hit.s).or_else(|| {
-                closest(target, point, Some(*normal)).map(|foot| (foot.position - point).dot(*normal))
+                self.misses[i] += 1;
+                (self.misses[i] <= MISSES)
+                    .then(|| closest(target, point, Some(*normal)))?
+                    .map(|foot| (foot.position - point).dot(*normal))
             });
             self.nothing[i] = gap.is_none();
             self.gaps[i] = gap.unwrap_or(0.0);

@@ -222,7 +222,7 @@ pub fn fit(
         Method::None | Method::Loop | Method::Solve => {
             // Beyond the active vertices the frozen surface may end.
             let mut samples = Samples::new(mesh, active, target, Rule::Gauss(1), SLOPE, false, false);
-            guard::guarded(mesh, &inner, &mut samples, job, |mesh, strikes, samples| {
+            guard::guarded(mesh, &inner, &mut samples, false, job, |mesh, strikes, samples| {
                 missed.clear();
                 let free: Vec<VertexId> =
                     inner.iter().copied().filter(|v| !strikes.contains_key(v)).collect();
@@ -245,7 +245,7 @@ pub fn fit(
             let slope = if slide { SLOPE_SLIDING } else { SLOPE };
             // Along normals alone curvature can hardly be kept: nearly everything would be held.
             let mut samples = Samples::new(mesh, &inner, target, Rule::Gauss(ORDER), slope, true, slide);
-            guard::guarded(mesh, &inner, &mut samples, job, |mesh, strikes, samples| {
+            guard::guarded(mesh, &inner, &mut samples, true, job, |mesh, strikes, samples| {
                 SurfaceFit::new(mesh, &freedoms, strikes, samples, job).run(mesh)
             })?
         }
