@@ -138,7 +138,7 @@ impl Lines {
             let gap = self.hits[i].map(|hit| hit.s).or_else(|| {
                 self.misses[i] += 1;
                 (self.misses[i] <= MISSES)
-                    .then(|| closest(target, point, Some(*normal)))?
+                    .then(|| closest(target, point, Some(*normal), target.reach))?
                     .map(|foot| (foot.position - point).dot(*normal))
             });
             self.nothing[i] = gap.is_none();
@@ -175,7 +175,7 @@ pub(super) fn foot_normal(target: &Target, point: DVec3, direction: Option<DVec3
         .and_then(|n| target.surface.nearest_line_hit(point, n, target.reach, n))
         .filter(|hit| !is_grazing(target, point, hit))
         .map(|hit| hit.normal)
-        .or_else(|| closest(target, point, direction).map(|foot| foot.normal))
+        .or_else(|| closest(target, point, direction, target.reach).map(|foot| foot.normal))
         .filter(|normal| *normal != DVec3::ZERO)
 }
 
@@ -183,11 +183,11 @@ pub(super) fn foot_normal(target: &Target, point: DVec3, direction: Option<DVec3
 /// run along the surface, and the hit is on a part that the point has nothing to do with.
 fn is_grazing(target: &Target, point: DVec3, hit: &Hit) -> bool {
     hit.s.abs() > FAR * target.reach
-        && closest(target, point, Some(hit.normal)).is_some_and(|foot| hit.s.abs() > GRAZING * foot.distance)
+        && closest(target, point, Some(hit.normal), hit.s.abs() / GRAZING).is_some()
 }
 
-/// The closest point within reach whose normal is on the side of `direction`.
-fn closest(target: &Target, point: DVec3, direction: Option<DVec3>) -> Option<Foot> {
+/// The closest point nearer than `radius` whose normal is on the side of `direction`.
+fn closest(target: &Target, point: DVec3, direction: Option<DVec3>, radius: f64) -> Option<Foot> {
     let facing = direction.map(|normal| Facing { normal, min_cosine: 0.0 });
-    target.surface.closest(point, &ClosestOptions { radius: target.reach, facing })
+    target.surface.closest(point, &ClosestOptions { radius: radius.min(target.reach), facing })
 }
