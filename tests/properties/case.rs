@@ -77,7 +77,12 @@ impl<'m> Case<'m> {
         }
         let request = Request::features(&features, &settings).ok()?;
         let options = Options {
-            method: random.pick(&[Method::None, Method::None, Method::Solve, Method::FitSlide]),
+            method: match random.below(10) {
+                0..6 => Method::None,
+                6..9 => Method::Solve,
+                // The default, but it takes long.
+                _ => Method::FitSlide,
+            },
             parity: random.pick(&[Mode::Auto, Mode::AllQuad, Mode::Local]),
             strict: random.once_in(10),
             ..Options::default()
