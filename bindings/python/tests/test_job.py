@@ -73,7 +73,9 @@ class Jobs(unittest.TestCase):
     @unittest.skipIf(sys.platform == "win32", "skipped: signals are sent another way on Windows")
     def test_ctrl_c_cancels(self):
         program = (
-            "import sys, welt\n"
+            "import signal, sys, welt\n"
+            # Programs in the background start with it ignored.
+            "signal.signal(signal.SIGINT, signal.default_int_handler)\n"
             "mesh = welt.Mesh.read(sys.argv[1])\n"
             "print('started', flush=True)\n"
             "try:\n"
