@@ -22,11 +22,18 @@ pub(crate) fn in_ranges<T: Send>(
     let work = &work;
     std::thread::scope(|scope| {
         let ranges = (0..count).step_by(size).map(|start| start..count.min(start + size));
-        let workers: Vec<_> = ranges.map(|range| scope.spawn(move || work(range))).collect();
-        // A panic in a worker goes on in the caller's thread.
-        let join = |worker: std::thread::ScopedJoinHandle<'_, T>| {
-            worker.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic))
-        };
-        workers.into_iter().map(join).collect()
+        let workers: Vec<_> = ranges
+            .map(|range| {
+                let own = range.clone();
+                (std::thread::Builder::new().spawn_scoped(scope, move || work(own)), range)
+            })
+            .collect();
+        let results = workers.into_iter().map(|(worker, range)| match worker {
+            // A panic in a worker goes on in the caller's thread.
+            Ok(worker) => worker.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic)),
+            // There was no room for one more thread.
+            Err(_) => work(range),
+        });
+        results.collect()
     })
 }

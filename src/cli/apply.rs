@@ -14,7 +14,7 @@ use std::sync::Arc;
 use welt::feature::{Options, ProfileError, Report, Request, RequestError};
 use welt::grammar::{Limits, RuleSet, Trace, Tracer};
 use welt::io;
-use welt::mark::{Selection, Selector, parity};
+use welt::mark::{Selection, Selector, Shape, parity};
 use welt::optimise::Method;
 use welt::surface::SAMPLES;
 
@@ -77,7 +77,7 @@ impl<'a> Work<'a> {
     /// Does it to one model.
     pub fn on(&self, files: &Files) -> Result<Report, Failure> {
         let arguments = self.arguments;
-        check_outputs(files, arguments)?;
+        check_outputs(files, arguments, &self.selectors)?;
         let options = options(arguments, self.tracer());
         let mut mesh = files::import(&files.input, &arguments.import)?;
         let before = files.figure.as_ref().map(|_| mesh.clone());
@@ -113,31 +113,27 @@ impl<'a> Work<'a> {
 }
 
 /// Refuses outputs that cannot be written, before any work is done.
-fn check_outputs(files: &Files, arguments: &Apply) -> Result<(), Failure> {
+fn check_outputs(files: &Files, arguments: &Apply, selectors: &[Selector]) -> Result<(), Failure> {
     let (report, figure) = (files.report.as_deref(), files.figure.as_deref());
     if report.is_some_and(files::is_standard) {
         return Err(Failure::usage("--report writes a file; --json prints the report as JSON"));
     }
-    if let Some(path) = figure.filter(|path| path.extension().is_none_or(|e| !e.eq_ignore_ascii_case("png")))
-    {
-        return Err(Failure::error(format_args!(
-            "{}: figures are PNG files; end the name with .png",
-            path.display()
-        )));
-    }
+    figure.map_or(Ok(()), files::check_picture)?;
     files::check_mesh_output(&files.output)?;
     let beside: Vec<&Path> = [report, figure, files.trace.as_deref()].into_iter().flatten().collect();
     beside.iter().try_for_each(|path| files::check_output(path))?;
-    // One would overwrite the other. The mesh may take the place of the mesh that is read.
-    let others = [&files.output, &files.input].map(PathBuf::as_path);
-    let others = others.into_iter().chain(arguments.replay.as_deref());
-    for (i, path) in beside.iter().enumerate() {
-        if others.clone().chain(beside[..i].iter().copied()).any(|other| files::are_same(path, other)) {
-            let path = path.display();
-            return Err(Failure::usage(format!("{path} is named twice; give each output a file of its own")));
-        }
-    }
-    Ok(())
+    // The mesh may take the place of the mesh that is read.
+    let read = selectors.iter().filter_map(|selector| match &selector.shape {
+        Shape::File(path) => Some(path.as_path()),
+        _ => None,
+    });
+    let profiles =
+        arguments.features.iter().map(|feature| Path::new(feature.rsplit('=').next().unwrap_or(feature)));
+    let others = [files.output.as_path(), &files.input];
+    let others = others.into_iter().chain(arguments.replay.as_deref()).chain(arguments.rules.as_deref());
+    let others: Vec<&Path> = others.chain(read).chain(profiles).collect();
+    files::check_apart(&beside, &others)?;
+    files::check_apart(&[&files.output], &others[2..])
 }
 
 fn replay(arguments: &Apply) -> Result<Option<Trace>, Failure> {

@@ -68,8 +68,28 @@ pub fn check_output(path: &Path) -> Result<(), Failure> {
     }
 }
 
+/// Refuses a picture that cannot be written as such.
+pub fn check_picture(path: &Path) -> Result<(), Failure> {
+    if path.extension().is_none_or(|e| !e.eq_ignore_ascii_case("png")) {
+        let path = path.display();
+        return Err(Failure::error(format_args!("{path}: pictures are PNG files; end the name with .png")));
+    }
+    check_output(path)
+}
+
+/// Refuses outputs that would overwrite each other or one of `others`.
+pub fn check_apart(outputs: &[&Path], others: &[&Path]) -> Result<(), Failure> {
+    for (i, path) in outputs.iter().enumerate() {
+        if others.iter().chain(&outputs[..i]).any(|other| are_same(path, other)) {
+            let path = path.display();
+            return Err(Failure::usage(format!("{path} is named twice; give each output a file of its own")));
+        }
+    }
+    Ok(())
+}
+
 /// Whether two names lead to one file.
-pub fn are_same(a: &Path, b: &Path) -> bool {
+fn are_same(a: &Path, b: &Path) -> bool {
     !is_standard(a) && !is_standard(b) && place(a).is_some_and(|a| place(b) == Some(a))
 }
 

@@ -16,7 +16,8 @@ use welt::subdivision::{Refinement, limit_points, limit_positions};
 pub fn run(arguments: &Limit) -> Result<ExitCode, Failure> {
     files::check_mesh_output(&arguments.output)?;
     if let Some(file) = &arguments.zebra {
-        files::check_output(file)?;
+        files::check_picture(file)?;
+        files::check_apart(&[file], &[&arguments.output, &arguments.input])?;
     }
     if arguments.curvature.is_some() && Format::of(&arguments.output) != Some(Format::Ply) {
         return Err(Failure::usage(

@@ -18,6 +18,7 @@ pub fn run(arguments: &args::Patches) -> Result<ExitCode, Failure> {
     }
     if !files::is_standard(&arguments.output) {
         files::check_output(&arguments.output)?;
+        files::check_apart(&[&arguments.output], &[&arguments.input])?;
     }
     let mesh = files::import(&arguments.input, &arguments.import)?;
     let faces: Vec<FaceId> = mesh.faces().collect();

@@ -2,6 +2,7 @@
 
 use indicatif::{ProgressBar, ProgressStyle};
 use std::io::IsTerminal;
+use std::sync::mpsc::RecvTimeoutError;
 use std::time::Duration;
 use welt::job::Job;
 
@@ -20,18 +21,20 @@ pub fn watch<T>(work: impl FnOnce(&Job) -> T) -> T {
     if let Ok(style) = ProgressStyle::with_template("{bar:30} {msg}") {
         bar.set_style(style);
     }
-    let done = std::sync::atomic::AtomicBool::new(false);
+    // The bar ends with the sender: also when the work panics.
+    let (working, ended) = std::sync::mpsc::channel::<()>();
+    let (bar, watched) = (&bar, &job);
+    let show = move || {
+        while ended.recv_timeout(INTERVAL) == Err(RecvTimeoutError::Timeout) {
+            bar.set_position((watched.progress() * STEPS as f64) as u64);
+            bar.set_message(watched.stage());
+        }
+    };
     let result = std::thread::scope(|scope| {
-        scope.spawn(|| {
-            while !done.load(std::sync::atomic::Ordering::Relaxed) {
-                bar.set_position((job.progress() * STEPS as f64) as u64);
-                bar.set_message(job.stage());
-                std::thread::sleep(INTERVAL);
-            }
-        });
-        let result = work(&job);
-        done.store(true, std::sync::atomic::Ordering::Relaxed);
-        result
+        let _working = working;
+        // Without room for a thread the work goes on without a bar.
+        let _ = std::thread::Builder::new().spawn_scoped(scope, show);
+        work(watched)
     });
     bar.finish_and_clear();
     result

@@ -12,7 +12,8 @@ use welt::surface::Quality;
 
 pub fn run(arguments: &args::Quality) -> Result<ExitCode, Failure> {
     if let Some(file) = &arguments.picture {
-        files::check_output(file)?;
+        files::check_picture(file)?;
+        files::check_apart(&[file], &[&arguments.input])?;
     }
     let mesh = files::import(&arguments.input, &arguments.import)?;
     let quality = Quality::of(&mesh, arguments.worst);

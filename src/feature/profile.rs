@@ -111,7 +111,7 @@ impl Profile {
     /// An unknown name, a file that cannot be used.
     pub fn named(name: &str) -> Result<Self, ProfileError> {
         if name.ends_with(".toml") {
-            let text = std::fs::read_to_string(name).map_err(|e| ProfileError::File {
+            let text = crate::io::read_text(name.as_ref()).map_err(|e| ProfileError::File {
                 message: format!(
                     "cannot read the profile file {name}: {e}; give the path of a profile (the folder profiles of the \
                      sources shows how one is written), or one of {}",

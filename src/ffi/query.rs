@@ -314,6 +314,9 @@ pub unsafe extern "C" fn welt_surface_all_hits(
             surface.line_hits_between(origin, direction, first, last)
         })?;
         let total = hits.iter().map(Vec::len).sum();
+        if capacity >= total && total > 0 && found.is_null() {
+            return Err(Failure::argument("found is NULL"));
+        }
         if let Some(needed) = needed {
             needed.set(total);
         }

@@ -6,10 +6,11 @@ use super::parse;
 use super::pattern::Pattern;
 use super::plan::{Anchor, NodePlan, Plan, Reach};
 use crate::gml::{Diagnostic, Effects, Program, Source, Span, Strings};
+use crate::io;
 use crate::mesh::{Domain, Value};
 use serde::Serialize;
 use std::collections::{BTreeMap, BTreeSet};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::sync::Arc;
 
 /// A number that a rule set lets its user choose.
@@ -130,7 +131,7 @@ impl RuleSet {
     /// The file cannot be read as text, or [`parse`](Self::parse) finds mistakes.
     pub fn load(path: &Path) -> Result<Self, RulesError> {
         let name = path.to_string_lossy();
-        let text = std::fs::read_to_string(path).map_err(|error| {
+        let text = io::read_text(path).map_err(|error| {
             let source = Source::new(&name, "");
             let message = format!("cannot read the rule file {name}: {error}");
             RulesError {
@@ -138,7 +139,7 @@ impl RuleSet {
                 unreadable: true,
             }
         })?;
-        Self::parse(&name, &text, &|file| std::fs::read_to_string(PathBuf::from(file)).ok())
+        Self::parse(&name, &text, &|file| io::read_text(Path::new(file)).ok())
     }
 
     /// The rules called `names` only, in the order of the text.

@@ -25,6 +25,7 @@ pub use source::Source;
 use crate::fault;
 use crate::memory::{self, OutOfMemory};
 use crate::mesh::{Mesh, Polygons};
+use std::io::Read;
 use std::path::Path;
 
 /// A file format.
@@ -186,6 +187,23 @@ pub fn import_bytes(
     options: &ImportOptions,
 ) -> Result<Import, ImportError> {
     read_bytes(name, format, bytes, options)?.build()
+}
+
+/// Texts that people write are smaller; a device or a wrong file may have no end.
+const MOST_TEXT: u64 = 64 << 20;
+
+/// The text of a rule file, a profile or a case.
+///
+/// # Errors
+/// The file cannot be read, is no UTF-8, or is larger than 64 MiB.
+pub(crate) fn read_text(path: &Path) -> std::io::Result<String> {
+    let mut text = String::new();
+    std::fs::File::open(path)?.take(MOST_TEXT + 1).read_to_string(&mut text)?;
+    if text.len() as u64 > MOST_TEXT {
+        let problem = format!("it is larger than {} MiB", MOST_TEXT >> 20);
+        return Err(std::io::Error::new(std::io::ErrorKind::FileTooLarge, problem));
+    }
+    Ok(text)
 }
 
 /// Reads the file at `path`, welded and repaired as asked, without building the mesh.

@@ -1,15 +1,15 @@
 //! The last word on a fit: no part of the surface may be bent more than without one.
 //!
-//! Beside extraordinary vertices and folds curvature changes between the samples of the fit, so where these see less than
-//! a clear gain it is judged at others, as many as a report takes. The mesh before the fit counts, sharp curves included.
+//! Beside extraordinary vertices and folds curvature changes between the samples of the fit, and folds have several feet to
+//! choose from. So where the samples of the fit see less than a clear gain, the surface is measured as a report measures it. The
+//! mesh before the fit counts, sharp curves included.
 
 use super::Target;
 use super::parts::parts;
-use super::samples::Samples;
-use crate::job::{Cancelled, Job};
-use crate::mesh::{Mesh, VertexId};
-use crate::subdivision::basis::Rule;
-use crate::surface::SAMPLES;
+use super::samples::{Error, Samples};
+use crate::job::Job;
+use crate::mesh::{FaceId, Mesh, VertexId};
+use crate::surface::{FreezeError, LimitSurface, Sampling, deviation_samples};
 use glam::DVec3;
 
 /// Parts of the way from the start to the fit that are tried in turn where the whole way is too far.
@@ -20,28 +20,35 @@ pub(super) struct Judge<'a> {
     active: &'a [VertexId],
     start: Vec<DVec3>,
     target: &'a Target,
+    /// Weight of the slopes as a length.
     slope: f64,
 }
 
 impl<'a> Judge<'a> {
-    /// Of a fit that may move the vertices of `active`, which are ascending.
+    /// Of a fit that may move the vertices of `active`, which are ascending; `slope` is the weight of the slopes in edges.
     pub(super) fn new(mesh: &Mesh, active: &'a [VertexId], target: &'a Target, slope: f64) -> Self {
-        Self { active, start: active.iter().map(|&v| mesh.position(v)).collect(), target, slope }
+        let start = active.iter().map(|&v| mesh.position(v)).collect();
+        // The reach is two edges.
+        Self { active, start, target, slope: 0.5 * slope * target.reach }
     }
 
     /// Takes each part of the surface that is worse than it was part of the way back, at last all of it; returns the numbers
     /// in `active` of the vertices that are back at the start.
-    pub(super) fn settle(&self, mesh: &mut Mesh, job: &Job) -> Result<Vec<usize>, Cancelled> {
+    pub(super) fn settle(&self, mesh: &mut Mesh, job: &Job) -> Result<Vec<usize>, FreezeError> {
         let end: Vec<DVec3> = self.active.iter().map(|&v| mesh.position(v)).collect();
-        let mut samples =
-            Samples::new(mesh, self.active, self.target, Rule::Cells(SAMPLES), self.slope, true, true);
+        // For its faces and what moves them; nothing is evaluated.
+        let samples = Samples::new(mesh, self.active, self.target, 1, 0.0, true, false);
+        let faces: Vec<FaceId> = samples.faces.iter().map(|face| face.face).collect();
         self.place(mesh, &self.start);
-        samples.evaluate(mesh, job)?;
-        let before = samples.snapshot();
+        let before = self.errors(mesh, &faces, job)?;
         self.place(mesh, &end);
-        samples.evaluate(mesh, job)?;
+        let mut now = self.errors(mesh, &faces, job)?;
+        let is_worse = |now: &[Error], part: &Vec<usize>| {
+            let sum = |errors: &[Error]| part.iter().map(|&k| errors[k]).fold(Error::default(), Error::plus);
+            sum(now).exceeds(sum(&before), Error::default())
+        };
         let mut worse: Vec<Vec<usize>> = parts(self.active, &samples);
-        worse.retain(|part| samples.is_worse(&before, part));
+        worse.retain(|part| is_worse(&now, part));
         for way in WAYS {
             if worse.is_empty() {
                 return Ok(Vec::new());
@@ -49,14 +56,31 @@ impl<'a> Judge<'a> {
             for number in self.vertices(&samples, &worse) {
                 mesh.set_position(self.active[number], self.start[number].lerp(end[number], way));
             }
-            samples.evaluate(mesh, job)?;
-            worse.retain(|part| samples.is_worse(&before, part));
+            now = self.errors(mesh, &faces, job)?;
+            worse.retain(|part| is_worse(&now, part));
         }
         let back = self.vertices(&samples, &worse);
         for &number in &back {
             mesh.set_position(self.active[number], self.start[number]);
         }
         Ok(back)
+    }
+
+    /// How far the surface of each of `faces`, which are ascending, is from the frozen one.
+    fn errors(&self, mesh: &Mesh, faces: &[FaceId], job: &Job) -> Result<Vec<Error>, FreezeError> {
+        let surface = LimitSurface::around_with(mesh, faces, job)?;
+        let mut errors = vec![Error::default(); faces.len()];
+        let target = &self.target.surface;
+        for sample in deviation_samples(&surface, |_| true, target, Sampling::default(), job)? {
+            if let Ok(number) = faces.binary_search(&sample.face) {
+                let distance = sample.signed.powi(2);
+                let slope = self.slope * sample.turn.to_radians().sin();
+                let bend = sample.bend.unwrap_or_default().powi(2);
+                let error = Error { distance, all: distance + slope.powi(2), bend };
+                errors[number] = errors[number].plus(error.map(|square| square * sample.area));
+            }
+        }
+        Ok(errors)
     }
 
     fn place(&self, mesh: &mut Mesh, positions: &[DVec3]) {

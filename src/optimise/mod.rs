@@ -23,9 +23,8 @@ pub use curves::SharpCurves;
 pub(crate) use curves::evaluate as evaluate_b_spline;
 pub(crate) use linear::{LeastSquares, Row};
 
-use crate::job::{Cancelled, Job};
+use crate::job::Job;
 use crate::mesh::{FaceId, Mesh, VertexId};
-use crate::subdivision::basis::Rule;
 use crate::surface::{FreezeError, LimitSurface};
 use curves::is_on_curve;
 use freedom::freedom;
@@ -189,14 +188,14 @@ pub fn active_set(mesh: &Mesh, changed: &[FaceId], method: Method) -> Vec<Vertex
 /// start.
 ///
 /// # Errors
-/// [`Cancelled`]; the mesh may have moved by then, so run this inside a transaction.
+/// [`FreezeError`]; the mesh may have moved by then, so run this inside a transaction.
 pub fn fit(
     mesh: &mut Mesh,
     active: &[VertexId],
     target: &Target,
     method: Method,
     job: &Job,
-) -> Result<FitReport, Cancelled> {
+) -> Result<FitReport, FreezeError> {
     let mut report = FitReport {
         method,
         active: 0,
@@ -221,7 +220,7 @@ pub fn fit(
     let outcome = match method {
         Method::None | Method::Loop | Method::Solve => {
             // Beyond the active vertices the frozen surface may end.
-            let mut samples = Samples::new(mesh, active, target, Rule::Gauss(1), SLOPE, false, false);
+            let mut samples = Samples::new(mesh, active, target, 1, SLOPE, false, false);
             guard::guarded(mesh, &inner, &mut samples, false, job, |mesh, strikes, samples| {
                 missed.clear();
                 let free: Vec<VertexId> =
@@ -244,7 +243,7 @@ pub fn fit(
             }
             let slope = if slide { SLOPE_SLIDING } else { SLOPE };
             // Along normals alone curvature can hardly be kept: nearly everything would be held.
-            let mut samples = Samples::new(mesh, &inner, target, Rule::Gauss(ORDER), slope, true, slide);
+            let mut samples = Samples::new(mesh, &inner, target, ORDER, slope, true, slide);
             guard::guarded(mesh, &inner, &mut samples, true, job, |mesh, strikes, samples| {
                 SurfaceFit::new(mesh, &freedoms, strikes, samples, job).run(mesh)
             })?

@@ -4,7 +4,7 @@ use super::walk::Start;
 use super::{TOLERANCE, Target};
 use crate::job::{Cancelled, Job};
 use crate::mesh::{FaceId, Mesh, VertexId};
-use crate::subdivision::basis::{Control, Place, Rule, Table, Tables};
+use crate::subdivision::basis::{Control, Place, Table, Tables};
 use crate::subdivision::{SurfacePoint, has_limit};
 use crate::surface::{ClosestOptions, Facing, Foot, Hit};
 use glam::DVec3;
@@ -52,7 +52,7 @@ pub(super) struct Error {
 }
 
 impl Error {
-    fn map(self, change: impl Fn(f64) -> f64) -> Self {
+    pub(super) fn map(self, change: impl Fn(f64) -> f64) -> Self {
         Self { distance: change(self.distance), all: change(self.all), bend: change(self.bend) }
     }
 
@@ -108,13 +108,13 @@ pub(super) struct Samples<'a> {
 }
 
 impl<'a> Samples<'a> {
-    /// Samples by `rule` on each face whose surface moves with `vertices`, which are ascending; only on
+    /// At most `order` x `order` samples on each face whose surface moves with `vertices`, which are ascending; only on
     /// faces between them, unless `beyond`. Changes of curvature count as errors if `has_curvature`.
     pub(super) fn new(
         mesh: &Mesh,
         vertices: &[VertexId],
         target: &'a Target,
-        rule: Rule,
+        order: usize,
         slope: f64,
         beyond: bool,
         has_curvature: bool,
@@ -125,7 +125,7 @@ impl<'a> Samples<'a> {
         around.sort_unstable();
         around.dedup();
         // A vertex moves the surface of the faces round its faces too.
-        let (mut tables, mut faces, mut count) = (Tables::new(rule), Vec::new(), 0);
+        let (mut tables, mut faces, mut count) = (Tables::new(order), Vec::new(), 0);
         for face in mesh.grow_faces(&around).into_iter().filter(|&face| has_limit(mesh, face)) {
             if is_large(mesh, face) || !(beyond || is_between(face)) {
                 continue;

@@ -45,18 +45,10 @@ impl Table {
 /// The control vertices of a face, in the order of its table.
 pub(crate) type Control = SmallVec<[VertexId; 32]>;
 
-/// Where faces are sampled.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
-pub(crate) enum Rule {
-    /// The points of a Gauss-Legendre rule: at most so many, 1 to 3, per side of a quad.
-    Gauss(usize),
-    /// The middles of cells: so many per side of a quad, half as many per side of a quadrant of another face.
-    Cells(usize),
-}
-
-/// Tables of faces, sampled by a rule.
+/// Tables of faces, sampled at the points of a Gauss-Legendre rule.
 pub(crate) struct Tables {
-    rule: Rule,
+    /// Points per side at most.
+    order: usize,
     known: FxHashMap<Vec<u32>, Rc<Table>>,
 }
 
@@ -66,8 +58,9 @@ const CORNER: u32 = u32::MAX;
 const FACE: u32 = u32::MAX - 1;
 
 impl Tables {
-    pub(crate) fn new(rule: Rule) -> Self {
-        Self { rule, known: FxHashMap::default() }
+    /// Tables with at most `order` x `order` samples per quad, 1 to 3.
+    pub(crate) fn new(order: usize) -> Self {
+        Self { order, known: FxHashMap::default() }
     }
 
     /// The table of a real face and its control vertices; `None` for a face of fewer than three edges.
@@ -80,7 +73,7 @@ impl Tables {
         if let Some(table) = self.known.get(&key) {
             return Some((control, Rc::clone(table)));
         }
-        let table = Rc::new(make(mesh, face, &control, self.rule)?);
+        let table = Rc::new(make(mesh, face, &control, self.order)?);
         self.known.insert(key, Rc::clone(&table));
         Some((control, table))
     }
@@ -93,32 +86,25 @@ const RULES: [&[(f64, f64)]; 3] = [
     &[(0.112_701_665_379_258_3, 5.0 / 18.0), (0.5, 8.0 / 18.0), (0.887_298_334_620_741_7, 5.0 / 18.0)],
 ];
 
-/// The samples of a face. Those of a Gauss-Legendre rule are 2 x 2 on each quadrant of a face that is no quad, and fewer where
-/// a face has many control vertices, so that each sample is dear and there are many of them.
-fn places(arity: usize, control: usize, rule: Rule) -> Vec<Place> {
+/// The samples of a face: 3 x 3 on a quad, 2 x 2 on each quadrant of another face; fewer where a face has many control
+/// vertices, so that each sample is dear and there are many of them.
+fn places(arity: usize, control: usize, order: usize) -> Vec<Place> {
     let patches = if arity == 4 { 1 } else { arity };
     let most = match control {
         ..32 if patches == 1 => 3,
         ..64 => 2,
         _ => 1,
     };
-    let rule: SmallVec<[(f64, f64); 8]> = match rule {
-        Rule::Gauss(order) => SmallVec::from_slice(RULES[order.clamp(1, most) - 1]),
-        Rule::Cells(cells) => {
-            let cells = if patches == 1 { cells } else { cells.div_ceil(2) }.max(1);
-            (0..cells).map(|cell| ((cell as f64 + 0.5) / cells as f64, 1.0 / cells as f64)).collect()
-        }
-    };
+    let rule = RULES[order.clamp(1, most) - 1];
     let of_patch = |patch| {
-        let rule = &rule;
         rule.iter()
             .flat_map(move |&(v, dv)| rule.iter().map(move |&(u, du)| Place { patch, u, v, share: du * dv }))
     };
     (0..patches).flat_map(of_patch).collect()
 }
 
-fn make(mesh: &Mesh, face: FaceId, control: &Control, rule: Rule) -> Option<Table> {
-    let places = places(mesh.arity(face), control.len(), rule);
+fn make(mesh: &Mesh, face: FaceId, control: &Control, order: usize) -> Option<Table> {
+    let places = places(mesh.arity(face), control.len(), order);
     let mut weights = vec![[0.0; 6]; places.len() * control.len()];
     for first in (0..control.len()).step_by(3) {
         let unit = |v: VertexId| {
@@ -221,7 +207,7 @@ mod tests {
         let crease = mesh.half_edges().next().expect("an edge");
         for sharpness in [0.0, 1.5, f32::INFINITY] {
             mesh.set_edge_sharpness(crease, sharpness);
-            let mut tables = Tables::new(Rule::Gauss(3));
+            let mut tables = Tables::new(3);
             for face in mesh.faces() {
                 let (control, table) = tables.of_face(&mesh, face).expect("a face");
                 for (place, weights) in table.samples() {

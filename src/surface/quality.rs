@@ -1,7 +1,8 @@
 //! What is to be expected of the surface of a control mesh: extraordinary vertices, worst faces.
 
+use super::LimitSurface;
 use crate::mesh::{FaceId, Mesh, VertexId};
-use crate::subdivision::{evaluate, limit_position};
+use crate::subdivision::limit_position;
 use glam::DVec3;
 use serde::Serialize;
 
@@ -63,8 +64,12 @@ impl Quality {
             let usual = if mesh.is_boundary_vertex(v) { 2 } else { 4 };
             faces().count() > 0 && (faces().count() != usual || faces().any(|f| mesh.arity(f) != 4))
         };
-        let vertices = mesh.vertices().filter(is_extraordinary);
-        let mut extraordinary: Vec<ExtraordinaryVertex> = vertices.map(|v| look_at(mesh, v)).collect();
+        let vertices: Vec<VertexId> = mesh.vertices().filter(is_extraordinary).collect();
+        let around: Vec<FaceId> =
+            vertices.iter().flat_map(|&v| mesh.outgoing(v)).map(|h| mesh.face(h)).collect();
+        let surface = LimitSurface::around(mesh, &around);
+        let mut extraordinary: Vec<ExtraordinaryVertex> =
+            vertices.into_iter().map(|v| look_at(mesh, &surface, v)).collect();
         extraordinary.sort_by(|a, b| b.variation.total_cmp(&a.variation).then(a.vertex.cmp(&b.vertex)));
         let faces: Vec<FaceQuality> = mesh.faces().map(|f| of_face(mesh, f)).collect();
         let sorted = |key: fn(&FaceQuality) -> f64| {
@@ -83,7 +88,7 @@ impl Quality {
     }
 }
 
-fn look_at(mesh: &Mesh, v: VertexId) -> ExtraordinaryVertex {
+fn look_at(mesh: &Mesh, surface: &LimitSurface, v: VertexId) -> ExtraordinaryVertex {
     let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
     let (mut length, mut edges) = (0.0, 0.0);
     for h in mesh.outgoing(v) {
@@ -105,7 +110,7 @@ fn look_at(mesh: &Mesh, v: VertexId) -> ExtraordinaryVertex {
                 (4, 3) => (y, 1.0 - x),
                 _ => (x, y),
             };
-            if let Some(found) = evaluate(mesh, face, patch, u, v).and_then(|point| point.curvature()) {
+            if let Some(found) = surface.evaluate(face, patch, u, v).and_then(|point| point.curvature()) {
                 (low, high) = (low.min(found.mean), high.max(found.mean));
             }
         }

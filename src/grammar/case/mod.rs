@@ -71,7 +71,7 @@ impl Case {
     /// The file cannot be read, or it or its rules have a mistake.
     pub fn load(path: &Path) -> Result<Self, CaseError> {
         let name = path.to_string_lossy();
-        let text = std::fs::read_to_string(path)
+        let text = crate::io::read_text(path)
             .map_err(|error| CaseError::Unreadable(name.to_string(), error.to_string()))?;
         read::read(&name, &text)
     }

@@ -204,7 +204,9 @@ impl<'a> Search<'a> {
         let aside = (way - unit * way.dot(unit)).length();
         if let Some(facing) = self.facing {
             let compatible = unit.dot(facing.normal) > facing.min_cosine;
-            let foot = aside <= 1e3 * self.surface.tolerance || self.on_rim(&found);
+            // From far away the way has the rounding of its own length.
+            let rounding = self.surface.tolerance + 4.0 * f64::EPSILON * distance;
+            let foot = aside <= 1e3 * rounding || self.on_rim(&found);
             if !compatible || unit == DVec3::ZERO || !foot {
                 return;
             }
