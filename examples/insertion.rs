@@ -5,7 +5,7 @@
 //!         [methods=NAME,...] [samples=N] [list]
 //!
 //! reads `../shared/data` (or `data=FOLDER`); `every=N` takes every Nth case, `faces=N` cages of at most N faces, `methods` are
-//! compared with `none`, surfaces at `samples` x `samples` places per face (3), and `list` prints every case too.
+//! compared with `none`, surfaces at `samples` x `samples` places per face (8, as reports do), and `list` prints every case too.
 
 #[allow(dead_code, reason = "shared with the tests")]
 #[path = "../tests/common/mod.rs"]
@@ -175,7 +175,7 @@ fn main() {
     let kinds = ["rings", "crossings", "tees", "widths"];
     let all = !kinds.iter().any(|kind| wanted(kind));
     let number = |name| value(name).and_then(|n| n.parse().ok()).filter(|n| *n > 0);
-    let (step, samples) = (number("every").unwrap_or(1), number("samples").unwrap_or(3));
+    let (step, samples) = (number("every").unwrap_or(1), number("samples").unwrap_or(8));
     let Some(data) = value("data").map(PathBuf::from).or_else(common::shared_data) else { return };
     let faces = number("faces").unwrap_or(usize::MAX);
     let methods: Vec<Method> = match value("methods") {

@@ -184,6 +184,11 @@ fn bad_usage_ends_with_2() {
             .fails(2, &["named twice", "file of its own"]);
         assert_eq!(folder.read("sheet.obj"), before);
     }
+    let before = folder.read("sheet.obj");
+    folder.welt(&["patches", "sheet.obj", "-o", "./sheet.obj"]).fails(2, &["named twice"]);
+    folder.welt(&["quality", "sheet.obj", "--picture", "sheet.obj"]).fails(1, &[".png"]);
+    folder.welt(&["limit", "sheet.obj", "-o", "new.ply", "--zebra", "new.ply"]).fails(1, &[".png"]);
+    assert_eq!(folder.read("sheet.obj"), before);
     folder.welt(&["limit", "sheet.obj", "-o", "out.obj", "--level", "11"]).fails(2, &["11", "0..=10"]);
     folder.welt(&["deviation", "sheet.obj", "sheet.obj", "--samples", "0"]).fails(2, &["1..=64"]);
     assert_eq!(

@@ -6,14 +6,17 @@
 
 use super::Target;
 use super::parts::parts;
-use super::samples::{Error, Samples};
+use super::samples::{Error, Samples, is_large};
 use crate::job::Job;
 use crate::mesh::{FaceId, Mesh, VertexId};
-use crate::surface::{FreezeError, LimitSurface, Sampling, deviation_samples};
+use crate::surface::{FreezeError, LimitSurface, SAMPLES, Sampling, deviation_samples};
 use glam::DVec3;
 
 /// Parts of the way from the start to the fit that are tried in turn where the whole way is too far.
 const WAYS: [f64; 3] = [0.5, 0.25, 0.125];
+
+/// Samples per side beside faces with many corners, where feet are dear.
+const FEW: usize = 2;
 
 /// The surface before a fit.
 pub(super) struct Judge<'a> {
@@ -71,7 +74,9 @@ impl<'a> Judge<'a> {
         let surface = LimitSurface::around_with(mesh, faces, job)?;
         let mut errors = vec![Error::default(); faces.len()];
         let target = &self.target.surface;
-        for sample in deviation_samples(&surface, |_| true, target, Sampling::default(), job)? {
+        let is_dear = mesh.grow_faces(faces).into_iter().any(|face| is_large(mesh, face));
+        let per_side = if is_dear { FEW } else { SAMPLES };
+        for sample in deviation_samples(&surface, |_| true, target, Sampling { per_side, threads: 1 }, job)? {
             if let Ok(number) = faces.binary_search(&sample.face) {
                 let distance = sample.signed.powi(2);
                 let slope = self.slope * sample.turn.to_radians().sin();

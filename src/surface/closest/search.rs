@@ -204,9 +204,11 @@ impl<'a> Search<'a> {
         let aside = (way - unit * way.dot(unit)).length();
         if let Some(facing) = self.facing {
             let compatible = unit.dot(facing.normal) > facing.min_cosine;
-            // From far away the way has the rounding of its own length.
-            let rounding = self.surface.tolerance + 4.0 * f64::EPSILON * distance;
-            let foot = aside <= 1e3 * rounding || self.on_rim(&found);
+            // From far away the way has the rounding of its own length, at last more than the surface is large.
+            let rounding = 4.0 * f64::EPSILON * distance;
+            let foot = aside <= 1e3 * (self.surface.tolerance + rounding)
+                || rounding > self.surface.size
+                || self.on_rim(&found);
             if !compatible || unit == DVec3::ZERO || !foot {
                 return;
             }
