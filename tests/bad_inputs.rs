@@ -53,12 +53,20 @@ fn files(folder: &Path) -> Vec<Vec<u8>> {
     paths.into_iter().map(|path| std::fs::read(path).expect("a file of the corpus")).collect()
 }
 
+fn regressions(target: &str) -> Vec<Vec<u8>> {
+    files(&root().join("tests/fuzz/regressions").join(target))
+}
+
 fn seeds(target: &str) -> Vec<Vec<u8>> {
     let mut seeds = files(&root().join("tests/fuzz/corpus").join(target));
     match target {
         "rules" => seeds.extend(files(&root().join("rules"))),
         "profile" => seeds.extend(files(&root().join("profiles"))),
         _ => {}
+    }
+    // Several of the slow calls in one input would take long together.
+    if target != "abi" {
+        seeds.extend(regressions(target));
     }
     seeds
 }
@@ -139,8 +147,7 @@ fn feed(name: &str, target: fuzz::Target) -> (usize, usize, Duration) {
     let seeds = seeds(name);
     assert!(!seeds.is_empty(), "{name} has no corpus");
     let mut inputs: BTreeSet<Vec<u8>> = seeds.iter().cloned().collect();
-    // As they are: twenty such calls in one input would take long together.
-    inputs.extend(files(&root().join("tests/fuzz/regressions").join(name)));
+    inputs.extend(regressions(name));
     let mut random = Random(name.bytes().map(u64::from).sum());
     while inputs.len() < INPUTS {
         let [seed, other] = [0, 0].map(|_| &seeds[random.below(seeds.len())]);

@@ -41,7 +41,7 @@ fn ring_step(otherwise: usize) -> usize {
 fn every_ring_takes_a_groove() {
     let Some(data) = common::shared_data() else { return };
     // All 1,735 rings with WELT_RING_STEP=1.
-    let thinned = ring_step(6);
+    let thinned = ring_step(4);
     let (mut count, mut narrow, mut shallow) = (0, Vec::new(), Vec::new());
     let (mut places, mut off) = (0, 0);
     for folder in ["upholstery", "product"] {

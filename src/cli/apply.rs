@@ -118,10 +118,11 @@ fn check_outputs(files: &Files, arguments: &Apply, selectors: &[Selector]) -> Re
     if report.is_some_and(files::is_standard) {
         return Err(Failure::usage("--report writes a file; --json prints the report as JSON"));
     }
+    let trace = files.trace.as_deref();
     figure.map_or(Ok(()), files::check_picture)?;
     files::check_mesh_output(&files.output)?;
-    let beside: Vec<&Path> = [report, figure, files.trace.as_deref()].into_iter().flatten().collect();
-    beside.iter().try_for_each(|path| files::check_output(path))?;
+    [report, trace].into_iter().flatten().try_for_each(files::check_output)?;
+    let beside: Vec<&Path> = [report, figure, trace].into_iter().flatten().collect();
     // The mesh may take the place of the mesh that is read.
     let read = selectors.iter().filter_map(|selector| match &selector.shape {
         Shape::File(path) => Some(path.as_path()),

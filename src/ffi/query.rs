@@ -314,20 +314,19 @@ pub unsafe extern "C" fn welt_surface_all_hits(
             surface.line_hits_between(origin, direction, first, last)
         })?;
         let total = hits.iter().map(Vec::len).sum();
-        if capacity >= total && total > 0 && found.is_null() {
-            return Err(Failure::argument("found is NULL"));
-        }
+        let buffer = if capacity < total {
+            Err(Failure::new(
+                WELT_ERROR_BUFFER,
+                format!("found has room for {capacity} hits; {total} are needed"),
+            ))
+        } else {
+            // SAFETY: the header asks for a buffer of this capacity.
+            Ok(unsafe { Buffer::new(found, capacity, total, "found") }?)
+        };
         if let Some(needed) = needed {
             needed.set(total);
         }
-        if capacity < total {
-            return Err(Failure::new(
-                WELT_ERROR_BUFFER,
-                format!("found has room for {capacity} hits; {total} are needed"),
-            ));
-        }
-        // SAFETY: the header asks for a buffer of this capacity.
-        let buffer = unsafe { Buffer::new(found, capacity, total, "found") }?;
+        let buffer = buffer?;
         let ends = hits.iter().scan(0, |end, hits| {
             *end += hits.len();
             Some(*end)

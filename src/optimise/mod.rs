@@ -119,7 +119,8 @@ pub struct FitReport {
     pub residual: f64,
     /// Active vertices that were held where they are, because the surface would have become worse than without a fit.
     pub held: usize,
-    /// Active vertices whose line and closest point found no frozen surface; they were not fitted.
+    /// Active vertices whose line and closest point found no frozen surface, at once or, where steps are many, again and
+    /// again; they were not fitted, or no further.
     pub missed: Vec<u32>,
 }
 

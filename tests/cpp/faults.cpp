@@ -1,6 +1,6 @@
 // A panic or a cancellation at the places of every function, in the library with fault injection: the documented error,
 // what was being changed is as it was before or poisoned, and everything else can still be used. Cancellations come at every
-// place, panics at the first forty and then at every eighth part further; `faults all` takes every one.
+// place, panics at the first hundred and then at every sixteenth part further; `faults all` takes every one.
 
 #include "check.hpp"
 #include "functions.hpp"
@@ -61,7 +61,7 @@ enum class Places { few, sample, all } places = Places::sample;
 std::uint64_t next(std::uint64_t n) {
     switch (places) {
     case Places::few: return 2 * n + n / 2;
-    case Places::sample: return n < 16 ? n + 1 : n + n / 4;
+    case Places::sample: return n < 100 ? n + 1 : n + n / 16;
     default: return n + 1;
     }
 }

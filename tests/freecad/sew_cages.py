@@ -15,8 +15,8 @@ import sys
 import tempfile
 
 HERE = os.path.dirname(os.path.abspath(__file__))
-# What FreeCAD's integration is good for, relative: 2e-4 on a jar whose patches, integrated span by span, are right to 4e-8.
-VOLUME = 4e-4
+# What the extrapolation is good for, relative. FreeCAD's own integration is worse on thin walls (docs/patches-cad.md).
+VOLUME = 1e-4
 HEAD = (
     "cage|clean|faces|extraordinary|patches|faces per patch|rings|deviation|rms|normals at vertices|along sides|"
     "closed shells|borders left open|valid|volume error|seconds|result"

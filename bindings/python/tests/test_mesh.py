@@ -285,12 +285,13 @@ class Features(unittest.TestCase):
         surface = mesh.freeze()
         mesh.displace([12], [0.5])
         self.assertAlmostEqual(mesh.limit_positions()[12, 2], 0.5, 12)
-        nearly = mesh.copy()
-        report = nearly.fit(surface, [12])
+        exact = mesh.copy()
+        exact.fit(surface, [12], "solve")
+        self.assertAlmostEqual(exact.limit_positions()[12, 2], 0.0, 9)
+        # A fit of the surface takes two steps, too few from so far off.
+        for _ in range(3):
+            report = mesh.fit(surface, [12])
         self.assertIsInstance(report, dict)
-        # Two steps from far off.
-        self.assertAlmostEqual(nearly.limit_positions()[12, 2], 0.0, 4)
-        mesh.fit(surface, [12], "solve")
         self.assertAlmostEqual(mesh.limit_positions()[12, 2], 0.0, 9)
 
     def test_what_is_no_selection_never_reaches_the_library(self):
