@@ -7,7 +7,7 @@
 use super::Stop;
 use super::parts::parts;
 use super::samples::Samples;
-use crate::job::{Cancelled, Job};
+use crate::job::Cancelled;
 use crate::mesh::{Mesh, VertexId};
 use glam::DVec3;
 use rustc_hash::FxHashMap;
@@ -39,11 +39,9 @@ pub(super) fn guarded<'a>(
     free: &[VertexId],
     samples: &mut Samples<'a>,
     in_degrees: bool,
-    job: &Job,
     mut fit: impl FnMut(&mut Mesh, &Strikes, &mut Samples<'a>) -> Result<Outcome, Cancelled>,
 ) -> Result<Outcome, Cancelled> {
     let start: Vec<DVec3> = free.iter().map(|&v| mesh.position(v)).collect();
-    samples.evaluate(mesh, job)?;
     let before = samples.snapshot();
     let mut strikes = Strikes::default();
     let mut repeat = 0;

@@ -1,16 +1,20 @@
 //! The last word on a fit: no part of the surface may be bent more than without one.
 //!
 //! Beside extraordinary vertices and folds curvature changes between the samples of the fit, and folds have several feet to
-//! choose from. So where the samples of the fit see less than a clear gain, the surface is measured as a report measures it. The
-//! mesh before the fit counts, sharp curves included.
+//! choose from. There the surface is measured as a report measures it; where that does not show a sure gain, the whole part
+//! is. The mesh before the fit counts, sharp curves included.
 
 use super::Target;
 use super::parts::parts;
-use super::samples::{Error, Samples, is_large};
+use super::samples::{Error, Samples, Snapshot, is_large};
 use crate::job::Job;
 use crate::mesh::{FaceId, Mesh, VertexId};
 use crate::surface::{FreezeError, LimitSurface, SAMPLES, Sampling, deviation_samples};
 use glam::DVec3;
+
+/// A gain is sure where the root mean squares fall to this part: where curvature is smooth, the samples of a fit and those
+/// of a report agree within a few per cent.
+const SURE: f64 = 0.9;
 
 /// Parts of the way from the start to the fit that are tried in turn where the whole way is too far.
 const WAYS: [f64; 3] = [0.5, 0.25, 0.125];
@@ -22,62 +26,122 @@ const FEW: usize = 2;
 pub(super) struct Judge<'a> {
     active: &'a [VertexId],
     start: Vec<DVec3>,
+    /// What the samples of the fit saw there.
+    seen: Snapshot,
     target: &'a Target,
     /// Weight of the slopes as a length.
     slope: f64,
 }
 
 impl<'a> Judge<'a> {
-    /// Of a fit that may move the vertices of `active`, which are ascending; `slope` is the weight of the slopes in edges.
-    pub(super) fn new(mesh: &Mesh, active: &'a [VertexId], target: &'a Target, slope: f64) -> Self {
+    /// Of a fit that may move the vertices of `active`, which are ascending; its `samples` are evaluated at the positions of
+    /// the mesh. `slope` is the weight of the slopes in edges.
+    pub(super) fn new(
+        mesh: &Mesh,
+        active: &'a [VertexId],
+        target: &'a Target,
+        samples: &Samples,
+        slope: f64,
+    ) -> Self {
         let start = active.iter().map(|&v| mesh.position(v)).collect();
         // The reach is two edges.
-        Self { active, start, target, slope: 0.5 * slope * target.reach }
+        Self { active, start, seen: samples.snapshot(), target, slope: 0.5 * slope * target.reach }
     }
 
     /// Takes each part of the surface that is worse than it was part of the way back, at last all of it; returns the numbers
-    /// in `active` of the vertices that are back at the start.
-    pub(super) fn settle(&self, mesh: &mut Mesh, job: &Job) -> Result<Vec<usize>, FreezeError> {
+    /// in `active` of the vertices that are back at the start. The samples are evaluated at the positions of the mesh.
+    pub(super) fn settle(
+        &self,
+        mesh: &mut Mesh,
+        samples: &Samples,
+        job: &Job,
+    ) -> Result<Vec<usize>, FreezeError> {
         let end: Vec<DVec3> = self.active.iter().map(|&v| mesh.position(v)).collect();
-        // For its faces and what moves them; nothing is evaluated.
-        let samples = Samples::new(mesh, self.active, self.target, 1, 0.0, true, false);
-        let faces: Vec<FaceId> = samples.faces.iter().map(|face| face.face).collect();
-        self.place(mesh, &self.start);
-        let before = self.errors(mesh, &faces, job)?;
-        self.place(mesh, &end);
-        let mut now = self.errors(mesh, &faces, job)?;
+        let mut parts = self.unsure(mesh, samples, &end, job)?;
+        if parts.is_empty() {
+            return Ok(Vec::new());
+        }
+        let faces: Vec<usize> = parts.iter().flatten().copied().collect();
+        let before = self.errors_at(&self.start, mesh, samples, &faces, job)?;
         let is_worse = |now: &[Error], part: &Vec<usize>| {
-            let sum = |errors: &[Error]| part.iter().map(|&k| errors[k]).fold(Error::default(), Error::plus);
-            sum(now).exceeds(sum(&before), Error::default())
+            sum(now, part).exceeds(sum(&before, part), Error::default())
         };
-        let mut worse: Vec<Vec<usize>> = parts(self.active, &samples);
-        worse.retain(|part| is_worse(&now, part));
+        let now = self.errors_at(&end, mesh, samples, &faces, job)?;
+        parts.retain(|part| is_worse(&now, part));
         for way in WAYS {
-            if worse.is_empty() {
+            if parts.is_empty() {
                 return Ok(Vec::new());
             }
-            for number in self.vertices(&samples, &worse) {
+            for number in self.vertices(samples, &parts) {
                 mesh.set_position(self.active[number], self.start[number].lerp(end[number], way));
             }
-            now = self.errors(mesh, &faces, job)?;
-            worse.retain(|part| is_worse(&now, part));
+            let faces: Vec<usize> = parts.iter().flatten().copied().collect();
+            let now = self.errors(mesh, samples, &faces, job)?;
+            parts.retain(|part| is_worse(&now, part));
         }
-        let back = self.vertices(&samples, &worse);
+        let back = self.vertices(samples, &parts);
         for &number in &back {
             mesh.set_position(self.active[number], self.start[number]);
         }
         Ok(back)
     }
 
-    /// How far the surface of each of `faces`, which are ascending, is from the frozen one.
-    fn errors(&self, mesh: &Mesh, faces: &[FaceId], job: &Job) -> Result<Vec<Error>, FreezeError> {
-        let surface = LimitSurface::around_with(mesh, faces, job)?;
-        let mut errors = vec![Error::default(); faces.len()];
+    /// The parts of the surface that did not surely become better; the mesh is at `end`.
+    fn unsure(
+        &self,
+        mesh: &mut Mesh,
+        samples: &Samples,
+        end: &[DVec3],
+        job: &Job,
+    ) -> Result<Vec<Vec<usize>>, FreezeError> {
+        let mut parts = parts(self.active, samples);
+        let is_rough = |k: &usize| !samples.is_plain(&self.seen, *k);
+        let rough: Vec<usize> = parts.iter().flatten().copied().filter(is_rough).collect();
+        let (mut before, mut now) = (self.seen.errors.clone(), samples.errors());
+        let measured_before = self.errors_at(&self.start, mesh, samples, &rough, job)?;
+        let measured = self.errors_at(end, mesh, samples, &rough, job)?;
+        for k in rough {
+            (before[k], now[k]) = (measured_before[k], measured[k]);
+        }
+        parts.retain(|part| {
+            let sure = sum(&before, part).map(|square| SURE * SURE * square);
+            sum(&now, part).exceeds(sure, samples.rounding(part))
+        });
+        Ok(parts)
+    }
+
+    /// [`errors`](Self::errors) with the active vertices at `positions`, where they stay.
+    fn errors_at(
+        &self,
+        positions: &[DVec3],
+        mesh: &mut Mesh,
+        samples: &Samples,
+        numbers: &[usize],
+        job: &Job,
+    ) -> Result<Vec<Error>, FreezeError> {
+        self.active.iter().zip(positions).for_each(|(&v, &position)| mesh.set_position(v, position));
+        self.errors(mesh, samples, numbers, job)
+    }
+
+    /// How far the surface of the sampled faces with these numbers is from the frozen one; nothing for the others.
+    fn errors(
+        &self,
+        mesh: &Mesh,
+        samples: &Samples,
+        numbers: &[usize],
+        job: &Job,
+    ) -> Result<Vec<Error>, FreezeError> {
+        let mut numbers: Vec<(FaceId, usize)> = numbers.iter().map(|&k| (samples.faces[k].face, k)).collect();
+        numbers.sort_unstable();
+        let faces: Vec<FaceId> = numbers.iter().map(|entry| entry.0).collect();
+        let surface = LimitSurface::around_during(mesh, &faces, job, "fit", 1.0)?;
+        let mut errors = vec![Error::default(); samples.faces.len()];
         let target = &self.target.surface;
-        let is_dear = mesh.grow_faces(faces).into_iter().any(|face| is_large(mesh, face));
+        let is_dear = mesh.grow_faces(&faces).into_iter().any(|face| is_large(mesh, face));
         let per_side = if is_dear { FEW } else { SAMPLES };
         for sample in deviation_samples(&surface, |_| true, target, Sampling { per_side, threads: 1 }, job)? {
-            if let Ok(number) = faces.binary_search(&sample.face) {
+            let number = numbers.binary_search_by_key(&sample.face, |entry| entry.0);
+            if let Ok(number) = number.map(|index| numbers[index].1) {
                 let distance = sample.signed.powi(2);
                 let slope = self.slope * sample.turn.to_radians().sin();
                 let bend = sample.bend.unwrap_or_default().powi(2);
@@ -88,10 +152,6 @@ impl<'a> Judge<'a> {
         Ok(errors)
     }
 
-    fn place(&self, mesh: &mut Mesh, positions: &[DVec3]) {
-        self.active.iter().zip(positions).for_each(|(&v, &position)| mesh.set_position(v, position));
-    }
-
     /// The active vertices of some parts, as numbers.
     fn vertices(&self, samples: &Samples, parts: &[Vec<usize>]) -> Vec<usize> {
         let control = parts.iter().flatten().flat_map(|&face| samples.faces[face].control.iter());
@@ -100,4 +160,9 @@ impl<'a> Judge<'a> {
         numbers.dedup();
         numbers
     }
+}
+
+/// The errors of a part of the surface.
+fn sum(errors: &[Error], part: &[usize]) -> Error {
+    part.iter().map(|&k| errors[k]).fold(Error::default(), Error::plus)
 }

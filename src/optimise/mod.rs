@@ -214,15 +214,27 @@ pub fn fit(
         active.iter().partition(|&&v| is_on_curve(mesh, v));
     // Where the surface ends before the boundary, vertices of the boundary have no point on it.
     inner.retain(|&v| !mesh.is_boundary_vertex(v));
-    let judge = (method == Method::FitSlide).then(|| Judge::new(mesh, active, target, SLOPE_SLIDING));
+    let slide = method == Method::FitSlide;
+    let mut samples = match method {
+        // Beyond the active vertices the frozen surface may end.
+        Method::None | Method::Loop | Method::Solve => {
+            Samples::new(mesh, active, target, 1, SLOPE, false, false)
+        }
+        // Along normals alone curvature can hardly be kept: nearly everything would be held.
+        Method::Fit => Samples::new(mesh, active, target, ORDER, SLOPE, true, false),
+        Method::FitSlide => Samples::new(mesh, active, target, ORDER, SLOPE_SLIDING, true, true),
+    };
+    samples.evaluate(mesh, job)?;
+    let judge = slide.then(|| Judge::new(mesh, active, target, &samples, SLOPE_SLIDING));
     // The limit of a vertex on a sharp curve depends on such vertices only, so the rim comes first.
     let (rim_steps, rim_gap) = fit_rim(mesh, &rim, target, method, job)?;
+    if rim_steps > 0 {
+        samples.evaluate(mesh, job)?;
+    }
     let mut missed = Vec::new();
     let outcome = match method {
         Method::None | Method::Loop | Method::Solve => {
-            // Beyond the active vertices the frozen surface may end.
-            let mut samples = Samples::new(mesh, active, target, 1, SLOPE, false, false);
-            guard::guarded(mesh, &inner, &mut samples, false, job, |mesh, strikes, samples| {
+            guard::guarded(mesh, &inner, &mut samples, false, |mesh, strikes, samples| {
                 missed.clear();
                 let free: Vec<VertexId> =
                     inner.iter().copied().filter(|v| !strikes.contains_key(v)).collect();
@@ -232,7 +244,6 @@ pub fn fit(
             })?
         }
         Method::Fit | Method::FitSlide => {
-            let slide = method == Method::FitSlide;
             let mut freedoms = Vec::with_capacity(inner.len());
             // What is not sampled must not move unseen.
             let seen = |v: &VertexId| !mesh.outgoing(*v).any(|h| samples::is_large(mesh, mesh.face(h)));
@@ -242,10 +253,7 @@ pub fn fit(
                     None => missed.push(v.0),
                 }
             }
-            let slope = if slide { SLOPE_SLIDING } else { SLOPE };
-            // Along normals alone curvature can hardly be kept: nearly everything would be held.
-            let mut samples = Samples::new(mesh, &inner, target, ORDER, slope, true, slide);
-            guard::guarded(mesh, &inner, &mut samples, true, job, |mesh, strikes, samples| {
+            guard::guarded(mesh, &inner, &mut samples, true, |mesh, strikes, samples| {
                 SurfaceFit::new(mesh, &freedoms, strikes, samples, job).run(mesh)
             })?
         }
@@ -256,7 +264,7 @@ pub fn fit(
     report.held = outcome.held;
     // Moved rims were not seen by the samples of the fit.
     if let Some(judge) = judge.filter(|_| !outcome.is_clear || rim_steps > 0) {
-        report.held = report.held.max(judge.settle(mesh, job)?.len());
+        report.held = report.held.max(judge.settle(mesh, &samples, job)?.len());
     }
     missed.sort_unstable();
     report.missed = missed;

@@ -21,6 +21,9 @@ const MARGIN: f64 = 1.0 + 1e-6;
 /// Curvature gains clearly where its mean square change falls to this part: to a half in rms.
 const CLEAR: f64 = 0.25;
 
+/// Feet closer than this share of a face's width are beyond doubt: no other part of the surface is likely to be as close.
+const CLOSE: f64 = 0.05;
+
 /// Faces with more corners, and at vertices with more edges, are not sampled: too many control vertices for the little
 /// that a sample says about each.
 const LARGE: usize = 16;
@@ -165,16 +168,39 @@ impl<'a> Samples<'a> {
         self.faces.iter().map(|face| face.error).fold(Error::default(), Error::plus)
     }
 
-    /// What is not above this in the sum over some faces is rounding: in distance, along the slopes, in curvature.
-    fn rounding(&self, area: f64) -> Error {
+    /// The errors face by face.
+    pub(super) fn errors(&self) -> Vec<Error> {
+        self.faces.iter().map(|face| face.error).collect()
+    }
+
+    /// True where nothing escapes the samples of a face, neither now nor at those of `before`: curvature is smooth on both
+    /// surfaces, and the feet are beyond doubt.
+    pub(super) fn is_plain(&self, before: &Snapshot, number: usize) -> bool {
+        let face = &self.faces[number];
+        let close = CLOSE * face.area.sqrt();
+        let surface = &self.target.surface;
+        let is_plain = |sample: &Sample| {
+            sample.foot.is_some_and(|foot| foot.s.abs() <= close && surface.is_bicubic(foot.face, foot.corner))
+        };
+        let range = face.first..face.first + face.table.samples().len();
+        face.table.is_bicubic()
+            && self.samples[range.clone()].iter().chain(&before.samples[range]).all(is_plain)
+    }
+
+    /// What is not above this in the sum over the faces with these numbers is rounding.
+    pub(super) fn rounding(&self, faces: &[usize]) -> Error {
+        self.rounding_on(faces.iter().map(|&k| self.faces[k].area).sum())
+    }
+
+    /// What is not above this in the sum over an area is rounding: in distance, along the slopes, in curvature.
+    fn rounding_on(&self, area: f64) -> Error {
         let distance = (TOLERANCE * self.target.reach).powi(2) * area;
         Error { distance, all: distance, bend: TOLERANCE.powi(2) * area / self.target.reach.powi(2) }
     }
 
     /// The samples as they are.
     pub(super) fn snapshot(&self) -> Snapshot {
-        let errors = self.faces.iter().map(|face| face.error).collect();
-        Snapshot { samples: self.samples.clone(), errors }
+        Snapshot { samples: self.samples.clone(), errors: self.errors() }
     }
 
     /// Goes back to the samples of `before`, whose positions the mesh has, on the faces with these numbers.
@@ -192,8 +218,7 @@ impl<'a> Samples<'a> {
         let bend = |error: &Error| error.bend;
         let now: f64 = faces.iter().map(|&k| bend(&self.faces[k].error)).sum();
         let was: f64 = faces.iter().map(|&k| bend(&before.errors[k])).sum();
-        let area = faces.iter().map(|&k| self.faces[k].area).sum();
-        now <= (CLEAR * was).max(self.rounding(area).bend)
+        now <= (CLEAR * was).max(self.rounding(faces).bend)
     }
 
     /// True when the surface of the faces with these numbers is further from the frozen one than it was.
@@ -201,8 +226,7 @@ impl<'a> Samples<'a> {
         let sum = |error: &dyn Fn(usize) -> Error| {
             faces.iter().map(|&k| error(k)).fold(Error::default(), Error::plus)
         };
-        let area = faces.iter().map(|&k| self.faces[k].area).sum();
-        sum(&|k| self.faces[k].error).exceeds(sum(&|k| before.errors[k]), self.rounding(area))
+        sum(&|k| self.faces[k].error).exceeds(sum(&|k| before.errors[k]), self.rounding(faces))
     }
 
     /// Numbers of the faces that are further from the frozen surface than they were, and than all faces were in the mean.
@@ -213,7 +237,7 @@ impl<'a> Samples<'a> {
         let mean = sum.map(|sum| WORSE * sum / area);
         let bends = self.error().bend > MARGIN * sum.bend;
         let is_worse = |k: &usize| {
-            let (face, rounding) = (&self.faces[*k], self.rounding(1.0));
+            let (face, rounding) = (&self.faces[*k], self.rounding_on(1.0));
             let floor = |mean: f64, rounding: f64| mean.max(rounding) * face.area;
             let floor = Error {
                 distance: floor(mean.distance, rounding.distance),

@@ -33,9 +33,15 @@ pub(crate) struct Table {
     weights: Vec<Weights>,
     vertices: usize,
     places: Vec<Place>,
+    is_bicubic: bool,
 }
 
 impl Table {
+    /// True for a quad that is one bicubic, so that curvature is smooth in it.
+    pub(crate) fn is_bicubic(&self) -> bool {
+        self.is_bicubic
+    }
+
     /// The samples, each with the weights of the control vertices.
     pub(crate) fn samples(&self) -> impl ExactSizeIterator<Item = (Place, &[Weights])> {
         self.places.iter().copied().zip(self.weights.chunks_exact(self.vertices.max(1)))
@@ -106,12 +112,14 @@ fn places(arity: usize, control: usize, order: usize) -> Vec<Place> {
 fn make(mesh: &Mesh, face: FaceId, control: &Control, order: usize) -> Option<Table> {
     let places = places(mesh.arity(face), control.len(), order);
     let mut weights = vec![[0.0; 6]; places.len() * control.len()];
+    let mut is_bicubic = false;
     for first in (0..control.len()).step_by(3) {
         let unit = |v: VertexId| {
             let at = control.iter().position(|&c| c == v).map_or(usize::MAX, |i| i.wrapping_sub(first));
             [DVec3::X, DVec3::Y, DVec3::Z].get(at).copied().unwrap_or_default()
         };
         let patches = Patch::of_ring(&Ring::with_positions(mesh, face, &unit)?);
+        is_bicubic = matches!(patches[..], [Patch::Regular(_)]);
         for (row, place) in weights.chunks_exact_mut(control.len()).zip(&places) {
             let jet = patches.get(place.patch)?.evaluate(place.u, place.v).jet;
             for (axis, entry) in row.iter_mut().skip(first).take(3).enumerate() {
@@ -119,7 +127,7 @@ fn make(mesh: &Mesh, face: FaceId, control: &Control, order: usize) -> Option<Ta
             }
         }
     }
-    Some(Table { weights, vertices: control.len(), places })
+    Some(Table { weights, vertices: control.len(), places, is_bicubic })
 }
 
 /// Adds to `key` the faces round the source of `corner` with their vertices as numbers in `control`, which grows by

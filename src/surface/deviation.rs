@@ -8,6 +8,7 @@ use super::{Foot, FreezeError, LimitSurface};
 use crate::job::{Cancelled, Job};
 use crate::memory::{self, OutOfMemory};
 use crate::mesh::{FaceId, Mesh};
+use crate::subdivision::SurfacePoint;
 use crate::threads::in_ranges;
 use glam::DVec3;
 use serde::Serialize;
@@ -16,6 +17,11 @@ use serde::Serialize;
 pub const SAMPLES: usize = 8;
 /// Distances below this share of the size are looked for along the normal first.
 const NEAR: f64 = 0.1;
+/// Feet that are closer than this share of the width of a cell are followed from one sample to the next: no other part of
+/// the surface is likely to be as close.
+const CLOSE: f64 = 0.25;
+/// Least cosine between the normals at a foot that is followed.
+const ALONG: f64 = 0.9;
 
 /// The distance at one point of the surface that is measured.
 #[derive(Clone, Copy, PartialEq, Debug)]
@@ -163,11 +169,19 @@ fn sample_faces(
         let width = 1.0 / cells as f64;
         memory::reserve(&mut samples, patches * cells * cells)?;
         for corner in 0..patches {
+            // The foot of the sample before, and that of the first sample of the row.
+            let (mut last, mut first) = (None, None);
             for cell in 0..cells * cells {
                 let (u, v) = (((cell % cells) as f64 + 0.5) * width, ((cell / cells) as f64 + 0.5) * width);
                 let Some(point) = from.evaluate(face, corner, u, v) else { continue };
-                let Some(foot) = foot_on(to, point.position, point.normal) else { continue };
                 let area = point.du.cross(point.dv).length() * width * width;
+                let start = if cell % cells == 0 { first } else { last };
+                let followed = start.and_then(|start| follow(to, start, &point, CLOSE * area.sqrt()));
+                let Some(foot) = followed.or_else(|| foot_on(to, point.position, point.normal)) else { continue };
+                last = Some(foot);
+                if cell % cells == 0 {
+                    first = last;
+                }
                 let there =
                     to.evaluate(foot.face, foot.corner, foot.u, foot.v).and_then(|there| there.curvature());
                 let bend = point.curvature().zip(there).map(|(here, there)| here.mean - there.mean);
@@ -191,6 +205,12 @@ fn sample_faces(
 /// The angle between two unit normals in degrees, 0 when one is zero.
 fn angle(a: DVec3, b: DVec3) -> f64 {
     a.cross(b).length().atan2(a.dot(b)).to_degrees()
+}
+
+/// The foot of `point` near another foot, where it is closer than `close` and the surfaces lie along each other.
+fn follow(to: &LimitSurface, start: Foot, point: &SurfacePoint, close: f64) -> Option<Foot> {
+    to.foot_near(start.face, start.corner, start.u, start.v, point.position)
+        .filter(|foot| foot.distance <= close && foot.normal.dot(point.normal) >= ALONG)
 }
 
 /// [`LimitSurface::compatible_foot`], fast where the surfaces are close: the foot near the hit of the sample's normal.

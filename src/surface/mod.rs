@@ -119,6 +119,20 @@ impl LimitSurface {
         freeze::freeze(mesh, &existing(mesh, faces)?, |done| Ok(job.step("freeze", done)?))
     }
 
+    /// [`around`](Self::around) within a stage of a job that is done to this part.
+    ///
+    /// # Errors
+    /// [`FreezeError`].
+    pub(crate) fn around_during(
+        mesh: &Mesh,
+        faces: &[FaceId],
+        job: &Job,
+        stage: &'static str,
+        done: f64,
+    ) -> Result<Self, FreezeError> {
+        freeze::freeze(mesh, &existing(mesh, faces)?, |_| Ok(job.step(stage, done)?))
+    }
+
     /// Frozen faces, ascending.
     pub fn faces(&self) -> impl Iterator<Item = FaceId> {
         self.places.iter().filter(|place| place.corner == 0).map(|place| place.face)
@@ -127,6 +141,11 @@ impl LimitSurface {
     /// Number of patches of `face`: 1 for a quad, one per corner for another face, 0 for a face that is not frozen.
     pub fn patch_count(&self, face: FaceId) -> usize {
         self.faces.patches(face).len()
+    }
+
+    /// True where a patch is one bicubic, so that curvature is smooth in it.
+    pub(crate) fn is_bicubic(&self, face: FaceId, corner: usize) -> bool {
+        self.patch_index(face, corner).is_some_and(|patch| matches!(self.patches[patch], Entry::Regular(_)))
     }
 
     /// Diagonal of a box round the surface: the size that tolerances refer to. 0 when nothing is frozen.
