@@ -63,9 +63,8 @@ impl<'a> Judge<'a> {
         }
         let faces: Vec<usize> = parts.iter().flatten().copied().collect();
         let before = self.errors_at(&self.start, mesh, samples, &faces, job)?;
-        let is_worse = |now: &[Error], part: &Vec<usize>| {
-            sum(now, part).exceeds(sum(&before, part), Error::default())
-        };
+        let is_worse =
+            |now: &[Error], part: &Vec<usize>| sum(now, part).exceeds(sum(&before, part), Error::default());
         let now = self.errors_at(&end, mesh, samples, &faces, job)?;
         parts.retain(|part| is_worse(&now, part));
         for way in WAYS {

@@ -180,7 +180,9 @@ impl<'a> Samples<'a> {
         let close = CLOSE * face.area.sqrt();
         let surface = &self.target.surface;
         let is_plain = |sample: &Sample| {
-            sample.foot.is_some_and(|foot| foot.s.abs() <= close && surface.is_bicubic(foot.face, foot.corner))
+            sample
+                .foot
+                .is_some_and(|foot| foot.s.abs() <= close && surface.is_bicubic(foot.face, foot.corner))
         };
         let range = face.first..face.first + face.table.samples().len();
         face.table.is_bicubic()

@@ -177,7 +177,9 @@ fn sample_faces(
                 let area = point.du.cross(point.dv).length() * width * width;
                 let start = if cell % cells == 0 { first } else { last };
                 let followed = start.and_then(|start| follow(to, start, &point, CLOSE * area.sqrt()));
-                let Some(foot) = followed.or_else(|| foot_on(to, point.position, point.normal)) else { continue };
+                let Some(foot) = followed.or_else(|| foot_on(to, point.position, point.normal)) else {
+                    continue;
+                };
                 last = Some(foot);
                 if cell % cells == 0 {
                     first = last;
@@ -215,13 +217,11 @@ fn follow(to: &LimitSurface, start: Foot, point: &SurfacePoint, close: f64) -> O
 
 /// [`LimitSurface::compatible_foot`], fast where the surfaces are close: the foot near the hit of the sample's normal.
 fn foot_on(to: &LimitSurface, point: DVec3, normal: DVec3) -> Option<Foot> {
-    to.nearest_line_hit(point, normal, NEAR * to.size(), normal)
-        .and_then(|hit| {
-            to.foot_near(hit.face, hit.corner, hit.u, hit.v, point)
-                .filter(|foot| foot.distance <= hit.s.abs())
-        })
-        .filter(|foot| foot.normal.dot(normal) > 0.0)
-        .or_else(|| to.compatible_foot(point, normal))
+    let hit = to.nearest_line_hit(point, normal, NEAR * to.size(), normal);
+    let bound = hit.as_ref().map_or(f64::INFINITY, |hit| hit.s.abs());
+    hit.and_then(|hit| to.foot_near(hit.face, hit.corner, hit.u, hit.v, point))
+        .filter(|foot| foot.distance <= bound && foot.normal.dot(normal) > 0.0)
+        .or_else(|| to.compatible_foot_within(point, normal, bound))
 }
 
 /// Two limit surfaces compared both ways.

@@ -70,8 +70,13 @@ impl LimitSurface {
     /// degrees counts, so that a thin wall does not snap to its other side, if there is one at most ten times as far
     /// away (else the point belongs to a small fold). `None` when the surface is empty or a coordinate is not finite.
     pub fn compatible_foot(&self, point: DVec3, normal: DVec3) -> Option<Foot> {
+        self.compatible_foot_within(point, normal, f64::INFINITY)
+    }
+
+    /// The same point, sooner where `bound` is a distance that some point of the surface has, but for rounding.
+    pub(super) fn compatible_foot_within(&self, point: DVec3, normal: DVec3, bound: f64) -> Option<Foot> {
         const FARTHER: f64 = 10.0;
-        let foot = self.closest(point, &ClosestOptions::default())?;
+        let foot = self.closest_within(point, &ClosestOptions::default(), bound)?;
         if foot.normal.dot(normal) > 0.0 {
             return Some(foot);
         }

@@ -82,7 +82,7 @@ impl LimitSurface {
     }
 
     /// `bound` is a distance that some point of the surface has, but for rounding, or infinity.
-    fn closest_within(&self, point: DVec3, options: &ClosestOptions, bound: f64) -> Option<Foot> {
+    pub(super) fn closest_within(&self, point: DVec3, options: &ClosestOptions, bound: f64) -> Option<Foot> {
         let near_enough = point.abs().max_element() <= FARTHEST;
         if !near_enough || options.radius.is_nan() {
             return None;
