@@ -15,6 +15,9 @@ use serde::Serialize;
 
 /// The usual number of samples per side of a face.
 pub const SAMPLES: usize = 8;
+/// Samples per side of the quadrants of faces with more than [`MANY`] corners, at most: such a face has enough quadrants.
+const FEW: usize = 2;
+const MANY: usize = 16;
 /// Distances below this share of the size are looked for along the normal first.
 const NEAR: f64 = 0.1;
 /// Feet that are closer than this share of the width of a cell are followed from one sample to the next: no other part of
@@ -109,7 +112,7 @@ impl Deviation {
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub struct Sampling {
     /// Samples per side of a face: `per_side` x `per_side` to a quad and half as many each way to the quadrants of
-    /// another face; 0 counts as 1.
+    /// another face, at most 2 where it has more than 16 corners; 0 counts as 1.
     pub per_side: usize,
     /// Threads to use; 0 for as many as the machine has. The result does not depend on it.
     pub threads: usize,
@@ -165,7 +168,12 @@ fn sample_faces(
             return Err(Cancelled.into());
         }
         let patches = from.patch_count(face);
-        let cells = if patches == 1 { per_side } else { per_side.div_ceil(2) }.max(1);
+        let cells = match patches {
+            1 => per_side,
+            ..=MANY => per_side.div_ceil(2),
+            _ => per_side.div_ceil(2).min(FEW),
+        };
+        let cells = cells.max(1);
         let width = 1.0 / cells as f64;
         memory::reserve(&mut samples, patches * cells * cells)?;
         for corner in 0..patches {
@@ -176,10 +184,7 @@ fn sample_faces(
                 let Some(point) = from.evaluate(face, corner, u, v) else { continue };
                 let area = point.du.cross(point.dv).length() * width * width;
                 let start = if cell % cells == 0 { first } else { last };
-                let followed = start.and_then(|start| follow(to, start, &point, CLOSE * area.sqrt()));
-                let Some(foot) = followed.or_else(|| foot_on(to, point.position, point.normal)) else {
-                    continue;
-                };
+                let Some(foot) = foot_on(to, start, &point, CLOSE * area.sqrt()) else { continue };
                 last = Some(foot);
                 if cell % cells == 0 {
                     first = last;
@@ -209,19 +214,26 @@ fn angle(a: DVec3, b: DVec3) -> f64 {
     a.cross(b).length().atan2(a.dot(b)).to_degrees()
 }
 
-/// The foot of `point` near another foot, where it is closer than `close` and the surfaces lie along each other.
-fn follow(to: &LimitSurface, start: Foot, point: &SurfacePoint, close: f64) -> Option<Foot> {
-    to.foot_near(start.face, start.corner, start.u, start.v, point.position)
-        .filter(|foot| foot.distance <= close && foot.normal.dot(point.normal) >= ALONG)
-}
-
-/// [`LimitSurface::compatible_foot`], fast where the surfaces are close: the foot near the hit of the sample's normal.
-fn foot_on(to: &LimitSurface, point: DVec3, normal: DVec3) -> Option<Foot> {
-    let hit = to.nearest_line_hit(point, normal, NEAR * to.size(), normal);
+/// [`LimitSurface::compatible_foot`] of a point of another surface, fast where the surfaces are close: the foot near `start`,
+/// where it is closer than `close` and they lie along each other; else that or the foot near the hit of the normal, where it
+/// is no further away than the hit.
+fn foot_on(to: &LimitSurface, start: Option<Foot>, point: &SurfacePoint, close: f64) -> Option<Foot> {
+    let SurfacePoint { position, normal, .. } = *point;
+    let near = |face, corner, u, v| {
+        to.foot_near(face, corner, u, v, position).filter(|foot| foot.normal.dot(normal) > 0.0)
+    };
+    let followed = start.and_then(|start| near(start.face, start.corner, start.u, start.v));
+    if let Some(foot) = followed.filter(|foot| foot.distance <= close && foot.normal.dot(normal) >= ALONG) {
+        return Some(foot);
+    }
+    let hit = to.nearest_line_hit(position, normal, NEAR * to.size(), normal);
     let bound = hit.as_ref().map_or(f64::INFINITY, |hit| hit.s.abs());
-    hit.and_then(|hit| to.foot_near(hit.face, hit.corner, hit.u, hit.v, point))
-        .filter(|foot| foot.distance <= bound && foot.normal.dot(normal) > 0.0)
-        .or_else(|| to.compatible_foot_within(point, normal, bound))
+    hit.and_then(|hit| near(hit.face, hit.corner, hit.u, hit.v))
+        .into_iter()
+        .chain(followed)
+        .filter(|foot| foot.distance <= bound)
+        .min_by(|a, b| a.distance.total_cmp(&b.distance))
+        .or_else(|| to.compatible_foot_within(position, normal, bound))
 }
 
 /// Two limit surfaces compared both ways.

@@ -131,6 +131,11 @@ impl Corners {
         Some(self.entries.len() as u32 - 1)
     }
 
+    /// Edges at the vertex of a corner.
+    pub(super) fn edges(&self, index: u32) -> usize {
+        self.fans[self.entries[index as usize].fan as usize].spokes as usize
+    }
+
     /// The corner in the form that can be refined.
     pub(super) fn corner(&self, index: u32) -> Corner {
         let CornerEntry { fan, home, outer } = &self.entries[index as usize];

@@ -11,6 +11,14 @@ use smallvec::SmallVec;
 
 /// Levels of pieces that are held beside an extraordinary vertex; deeper ones are made when a query gets there.
 const LEVELS: u32 = 4;
+/// The same at a vertex with many edges: there levels shrink less and are dear to make.
+const LEVELS_OF_MANY: u32 = 8;
+/// Edges that are many.
+const MANY: usize = 16;
+
+fn levels(edges: usize) -> u32 {
+    if edges > MANY { LEVELS_OF_MANY } else { LEVELS }
+}
 
 /// Where a piece lies: a square of a patch, turned by quarter turns.
 #[derive(Clone, Copy, Debug)]
@@ -64,6 +72,8 @@ impl Domain {
 #[derive(Clone, Debug)]
 pub(super) struct Rest {
     corner: u32,
+    /// Refinements that lead to it.
+    levels: u32,
     /// Of what remains.
     pub(super) domain: Domain,
     /// Unit normal at the vertex, zero where there is none.
@@ -94,17 +104,33 @@ impl Rest {
     pub(super) fn corner(&self, surface: &LimitSurface) -> Corner {
         let mut corner = surface.corners.corner(self.corner);
         let mut scratch = Points::new();
-        for _ in 0..LEVELS {
+        for _ in 0..self.levels {
             corner.refine(&mut scratch);
         }
         corner
     }
 }
 
+/// Points whose convex hull holds the quad. Its control points reach round the whole vertex; where many quads do that,
+/// those of its pieces are taken for as many levels as are held, or every query there would look at all of them.
+fn hull(corner: &mut Corner, scratch: &mut Points) -> SmallVec<[DVec3; 16]> {
+    let mut points = SmallVec::new();
+    if corner.spokes.len() > MANY {
+        for _ in 0..LEVELS_OF_MANY {
+            for grid in corner.refine(scratch) {
+                let piece = Bicubic::from_bspline(&grid);
+                points.extend(piece.points.as_flattened().iter().map(|&p| p + corner.origin));
+            }
+        }
+    }
+    points.extend(corner.control_points().map(|p| p + corner.origin));
+    points
+}
+
 impl Index {
     pub(super) fn new(surface: &LimitSurface) -> Result<Self, OutOfMemory> {
         let (held, rests) = (surface.bicubics.len(), surface.corners.entries.len());
-        let pieces = 3 * LEVELS as usize * rests;
+        let pieces: usize = (0..rests as u32).map(|k| 3 * levels(surface.corners.edges(k)) as usize).sum();
         let mut index = Self {
             domains: memory::room(held + pieces)?,
             pieces: memory::room(pieces)?,
@@ -132,7 +158,8 @@ impl Index {
                         let mut domain = domain.turned(turns);
                         let mut corner = surface.corners.corner(number);
                         let normal = surface.corners.normal(number);
-                        for _ in 0..LEVELS {
+                        let levels = levels(corner.spokes.len());
+                        for _ in 0..levels {
                             for (side, grid) in corner.refine(&mut scratch).iter().enumerate() {
                                 let grid = grid.map(|row| row.map(|p| p + corner.origin));
                                 let piece = Bicubic::from_bspline(&grid);
@@ -142,11 +169,12 @@ impl Index {
                             }
                             domain = domain.inner();
                         }
-                        rest_boxes.push(corner.bounds());
-                        let points: SmallVec<[DVec3; 16]> =
-                            corner.control_points().map(|p| p + corner.origin).collect();
+                        let points = hull(&mut corner, &mut scratch);
+                        let empty = (DVec3::INFINITY, DVec3::NEG_INFINITY);
+                        let wider = |(low, high): (DVec3, DVec3), &p: &DVec3| (low.min(p), high.max(p));
+                        rest_boxes.push(points.iter().fold(empty, wider));
                         rest_discs.push(Disc::around(points.iter().copied(), normal));
-                        index.rests.push(Rest { corner: number, domain, normal });
+                        index.rests.push(Rest { corner: number, levels, domain, normal });
                     }
                 }
             }
