@@ -117,7 +117,8 @@ pub struct FitReport {
     /// Largest distance to the frozen surface after the last step, of a limit point along its line or, for the surface
     /// fits, of a sample (model units).
     pub residual: f64,
-    /// Active vertices that were held where they are, because the surface would have become worse than without a fit.
+    /// Active vertices that were held where they are, because the surface would have become worse than without a fit; all
+    /// where numbers are so coarse (far from the origin) that nothing could be measured.
     pub held: usize,
     /// Active vertices whose line and closest point found no frozen surface, at once or, where steps are many, again and
     /// again; they were not fitted, or no further.
@@ -135,6 +136,8 @@ const ORDER: usize = 3;
 const SLOPE: f64 = 0.3;
 /// The same where they may slide.
 const SLOPE_SLIDING: f64 = 0.5;
+/// Nothing is fitted where rounding is beyond this share of `reach`.
+const COARSE: f64 = 0.01;
 /// Tolerance on the limit points, relative to `reach`.
 const TOLERANCE: f64 = 1e-7;
 
@@ -210,6 +213,10 @@ pub fn fit(
         return Ok(report);
     }
     report.active = active.len();
+    if target.surface.rounding() > COARSE * target.reach {
+        report.held = active.len();
+        return Ok(report);
+    }
     let (rim, mut inner): (Vec<VertexId>, Vec<VertexId>) =
         active.iter().partition(|&&v| is_on_curve(mesh, v));
     // Where the surface ends before the boundary, vertices of the boundary have no point on it.

@@ -153,6 +153,11 @@ impl LimitSurface {
         self.size
     }
 
+    /// Distances below this are rounding.
+    pub(crate) fn rounding(&self) -> f64 {
+        self.tolerance
+    }
+
     /// True when the surface has no border: every edge of the frozen faces lies between two of them.
     pub fn is_closed(&self) -> bool {
         self.closed
