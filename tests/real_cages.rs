@@ -11,11 +11,13 @@ use welt::mark::{Mark, Selection};
 use welt::mesh::{Mesh, Polygons, VertexId};
 use welt::optimise::Method;
 
-fn groove(mesh: &mut Mesh, ring: &Marked, depth: &str, method: Method, deviation: bool) -> Report {
-    let request =
-        Request::features(&["groove"], &["width=30%", &format!("depth={depth}")]).expect("a request");
+fn request(depth: &str) -> Request {
+    Request::features(&["groove"], &["width=30%", &format!("depth={depth}")]).expect("a request")
+}
+
+fn groove(mesh: &mut Mesh, ring: &Marked, request: &Request, method: Method, deviation: bool) -> Report {
     let options = Options { method, samples: if deviation { 3 } else { 0 }, ..Options::default() };
-    feature::apply(mesh, &ring.selection, &request, &options, &Job::new()).expect("a ring takes a groove")
+    feature::apply(mesh, &ring.selection, request, &options, &Job::new()).expect("a ring takes a groove")
 }
 
 /// Chairs whose edges change their lengths slowly: the width holds to 3 % at all but 3 % of the places. On the others
@@ -42,6 +44,7 @@ fn every_ring_takes_a_groove() {
     let Some(data) = common::shared_data() else { return };
     // All 1,735 rings with WELT_RING_STEP=1.
     let thinned = ring_step(4);
+    let request = request("10%");
     let (mut count, mut narrow, mut shallow) = (0, Vec::new(), Vec::new());
     let (mut places, mut off) = (0, 0);
     for folder in ["upholstery", "product"] {
@@ -50,14 +53,14 @@ fn every_ring_takes_a_groove() {
             let is_even = EVEN_CHAIRS.contains(&name.as_str());
             for ring in rings(&mesh).into_iter().step_by(if is_even { 1 } else { thinned }) {
                 let mut result = mesh.clone();
-                let report = groove(&mut result, &ring, "10%", Method::Solve, false);
+                let report = groove(&mut result, &ring, &request, Method::Solve, false);
                 let marks = ring.selection.marks.len();
                 result.validate_control_mesh().unwrap_or_else(|e| panic!("{name}: {e}"));
                 assert!(report.leftovers.is_empty(), "{name}: {report}");
                 assert_eq!(result.vertex_bound(), mesh.vertex_bound() + 3 * marks, "{name}");
                 assert_eq!(non_quads(&result), non_quads(&mesh), "{name}");
                 let mut again = mesh.clone();
-                groove(&mut again, &ring, "10%", Method::Solve, false);
+                groove(&mut again, &ring, &request, Method::Solve, false);
                 assert_eq!(again.to_polygons(), result.to_polygons(), "{name}: two runs differ");
                 narrow.extend(report.dimension("width").iter().flat_map(|d| [d.worst_low, d.worst_high]));
                 shallow.extend(report.dimension("depth").iter().flat_map(|d| [d.worst_low, d.worst_high]));
@@ -106,6 +109,7 @@ struct Row {
 
 /// Every `step`-th ring whose surface an insertion without a fit moves by more than a thousandth of an edge in rms.
 fn depth_zero(data: &std::path::Path, methods: &[Method], step: usize) -> Vec<Row> {
+    let request = request("0");
     let empty = |&method| Row {
         method,
         closer: Default::default(),
@@ -120,7 +124,7 @@ fn depth_zero(data: &std::path::Path, methods: &[Method], step: usize) -> Vec<Ro
     });
     for (name, mesh, ring) in rings.step_by(step) {
         let insert = |method| {
-            let report = groove(&mut mesh.clone(), &ring, "0", method, true);
+            let report = groove(&mut mesh.clone(), &ring, &request, method, true);
             let time = report.times.iter().filter(|lap| lap.0 == "fit").map(|lap| lap.1).sum::<f64>();
             (report.fitted.unwrap_or_else(|| panic!("{name}: no deviation")).total, time)
         };
@@ -207,6 +211,7 @@ fn depth_zero_leaves_the_surface_where_it_was() {
 #[test]
 fn junctions_of_depth_zero_are_no_worse_than_without_a_fit() {
     let Some(data) = common::shared_data() else { return };
+    let request = request("0");
     let mut closer = Vec::new();
     for (name, mesh) in common::clean_cages(&data, "product").into_iter().step_by(4) {
         let rings = rings(&mesh);
@@ -214,7 +219,7 @@ fn junctions_of_depth_zero_are_no_worse_than_without_a_fit() {
             let pair = pair.map(|number| &rings[number]);
             for marked in [Some(crossing(&mesh, pair)), tees(&mesh, pair)].into_iter().flatten() {
                 let insert = |method| {
-                    let report = groove(&mut mesh.clone(), &marked, "0", method, true);
+                    let report = groove(&mut mesh.clone(), &marked, &request, method, true);
                     report.fitted.unwrap_or_else(|| panic!("{name}: no deviation")).total
                 };
                 let (none, fitted) = (insert(Method::None), insert(Method::FitSlide));
@@ -252,6 +257,7 @@ fn renumbered(mesh: &Mesh) -> Mesh {
 #[test]
 fn fits_do_not_depend_on_the_numbering() {
     let Some(data) = common::shared_data() else { return };
+    let request = request("0");
     let mesh = common::load(&data.join("upholstery/bs0_chair2.obj"));
     let other = renumbered(&mesh);
     let last = mesh.vertex_bound() as u32 - 1;
@@ -267,8 +273,8 @@ fn fits_do_not_depend_on_the_numbering() {
         let other_ring = Marked { selection, edge: ring.edge };
         for method in [Method::Solve, Method::FitSlide] {
             let (mut first, mut second) = (mesh.clone(), other.clone());
-            held += groove(&mut first, &ring, "0", method, false).fit.held;
-            groove(&mut second, &other_ring, "0", method, false);
+            held += groove(&mut first, &ring, &request, method, false).fit.held;
+            groove(&mut second, &other_ring, &request, method, false);
             for v in mesh.vertices() {
                 let apart = first.position(v).distance(second.position(VertexId(last - v.0)));
                 assert!(apart < 1e-6 * ring.edge, "{method:?}, vertex {}: {}", v.0, apart / ring.edge);
