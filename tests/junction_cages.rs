@@ -9,7 +9,6 @@ use welt::grammar::{self, RuleSet, RunOptions};
 use welt::job::Job;
 use welt::mark::{Mark, Selection};
 use welt::mesh::{Domain, HalfEdgeId, Mesh, Node, Value};
-use welt::optimise::Method;
 
 /// Numbers that look random (xorshift).
 struct Random(u64);
@@ -139,10 +138,8 @@ fn random_marks_give_valid_meshes() {
 fn random_grooves_are_resolved() {
     let request = Request::features(&["groove"], &[] as &[&str]).expect("a request");
     let mut random = Random(0x0dd_ba11);
-    for (number, (name, cage)) in cages().into_iter().enumerate() {
-        // What is marked is resolved before anything is fitted, and the default takes long.
-        let method = if number % 4 == 0 { Options::default().method } else { Method::Solve };
-        let options = Options { method, ..Options::default() };
+    let options = Options::default();
+    for (name, cage) in cages() {
         for _ in 0..2 {
             let marks: Vec<Mark> = choose(&cage, &mut random)
                 .into_iter()

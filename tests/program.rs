@@ -37,6 +37,7 @@ fn parameters_that_a_feature_cannot_take() {
     set("width").fails(2, &["NAME=VALUE"]);
     set("width=wide").fails(2, &["wide"]);
     set("depth=1e200").fails(2, &["1e200", "out of range", "at most 1e50"]);
+    set("depth=1e50").fails(1, &["of the result would lie beyond 1e50", "ask for less"]);
     set("width=-1").fails(2, &["not be less than 0"]);
     folder
         .welt(&["apply", "sheet.obj", "-o", "out.obj", "--feature", "grove", "--mark", "ring:1,2"])

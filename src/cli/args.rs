@@ -39,7 +39,7 @@ pub struct Import {
     #[arg(long)]
     pub repair: bool,
     /// Merge vertices that are no further apart than EPS (model units)
-    #[arg(long, value_name = "EPS")]
+    #[arg(long, value_name = "EPS", allow_negative_numbers = true)]
     pub weld: Option<f64>,
     /// What becomes of the boundary; what the file says, or edge, without it
     #[arg(long, value_enum, value_name = "RULE")]

@@ -58,6 +58,6 @@ fn named<F: Copy>(text: &str, known: &[(&str, F)]) -> Result<(F, u64), String> {
         .iter()
         .find(|(known, _)| *known == name)
         .ok_or_else(|| format!("there is no limit {name}; there are {}", names()))?;
-    let most = most.parse().map_err(|_| format!("{most} is no whole number from 0 to 2^64 - 1"))?;
+    let most = most.parse().map_err(|_| format!("'{most}' is no whole number from 0 to 2^64 - 1"))?;
     Ok((set, most))
 }

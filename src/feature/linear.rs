@@ -10,7 +10,7 @@ use super::{FeatureError, Options, Request, deviation};
 use crate::grammar;
 use crate::job::Job;
 use crate::mark::{self, Mark, Selection, parity};
-use crate::mesh::{FaceId, Mesh, Node, Value, VertexId};
+use crate::mesh::{FaceId, MOST_COORDINATE, Mesh, Node, Value, VertexId};
 use crate::optimise::{self, FitReport, Target};
 use crate::subdivision::limit_normal;
 use crate::surface::Sampling;
@@ -127,6 +127,10 @@ impl Run<'_> {
             self.correct(mesh, &misses, &mut aims);
             corrections += 1;
         };
+        let is_beyond = |v: &VertexId| !(mesh.position(*v).abs().max_element() <= MOST_COORDINATE);
+        if let Some(vertex) = pass.unfitted.iter().map(|entry| entry.0).find(is_beyond) {
+            return Err(FeatureError::Beyond { vertex: vertex.0 });
+        }
         self.report(mesh, pass, corrections, reference.as_ref(), walls.as_ref(), job)
     }
 

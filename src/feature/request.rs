@@ -6,6 +6,7 @@ use crate::grammar::{self, RuleSet, Tracer};
 use crate::job::Cancelled;
 use crate::mark::{DEFAULT_KIND, parity};
 use crate::memory::OutOfMemory;
+use crate::mesh::MOST_COORDINATE;
 use crate::optimise::Method;
 use crate::surface::FreezeError;
 use std::collections::BTreeMap;
@@ -314,6 +315,14 @@ pub enum FeatureError {
     Unresolved {
         /// What would be left over.
         leftovers: Vec<Leftover>,
+    },
+    /// A result too large to be read again.
+    #[error(
+        "vertex {vertex} of the result would lie beyond {MOST_COORDINATE:e}; ask for less, or scale the model"
+    )]
+    Beyond {
+        /// The vertex, of the mesh as it would have become.
+        vertex: u32,
     },
     /// The rules failed.
     #[error(transparent)]

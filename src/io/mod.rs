@@ -192,7 +192,7 @@ pub fn import_bytes(
 /// Texts that people write are smaller; a device or a wrong file may have no end.
 const MOST_TEXT: u64 = 64 << 20;
 
-/// The text of a rule file, a profile or a case.
+/// The text of a rule file, a profile, a case or a file of marks.
 ///
 /// # Errors
 /// The file cannot be read, is no UTF-8, or is larger than 64 MiB.

@@ -5,11 +5,7 @@ use super::{Course, Curve, Mark, MarkError};
 use crate::mesh::Mesh;
 use glam::DVec3;
 use serde::Deserialize;
-use std::io::Read;
 use std::path::Path;
-
-/// Size that a mark file can have, in bytes.
-const MAX_BYTES: u64 = 64 << 20;
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -51,10 +47,9 @@ fn middle() -> f64 {
 /// Reads the marks and curves of `path`; entries without a kind get `kind`.
 pub(super) fn read(mesh: &Mesh, path: &Path, kind: &str) -> Result<(Vec<Mark>, Vec<Curve>), MarkError> {
     let name = path.display().to_string();
-    let mut text = Vec::new();
-    let read = std::fs::File::open(path).and_then(|file| file.take(MAX_BYTES + 1).read_to_end(&mut text));
-    read.map_err(|e| MarkError::File { path: name.clone(), problem: e.to_string() })?;
-    parse(mesh, &name, &text, kind)
+    let text = crate::io::read_text(path)
+        .map_err(|error| MarkError::File { path: name.clone(), problem: error.to_string() })?;
+    parse(mesh, &name, text.as_bytes(), kind)
 }
 
 /// [`read`] for the content of a file. `name` stands for the file in messages.
@@ -65,9 +60,6 @@ pub(super) fn parse(
     kind: &str,
 ) -> Result<(Vec<Mark>, Vec<Curve>), MarkError> {
     let error = |problem: String| MarkError::File { path: name.to_owned(), problem };
-    if text.len() as u64 > MAX_BYTES {
-        return Err(error(format!("the file is larger than {} MiB; is it a mark file?", MAX_BYTES >> 20)));
-    }
     let file: File = serde_json::from_slice(text).map_err(|e| {
         error(format!(
             "{e}; a mark file is {{\"marks\": [{{\"edge\": [0, 1], \"t\": 0.5, \"kind\": \"red\"}}]}}"

@@ -59,12 +59,12 @@ pub struct Selection {
 #[derive(Clone, PartialEq, Debug, thiserror::Error)]
 pub enum MarkError {
     /// A vertex number beyond the mesh.
-    #[error("vertex {vertex} does not exist; the mesh has vertices 0 to {last}")]
+    #[error("vertex {vertex} does not exist; the mesh has {}", numbers(*count))]
     NoSuchVertex {
         /// The number asked for.
         vertex: u32,
-        /// The highest number there is.
-        last: i64,
+        /// How many there are.
+        count: usize,
     },
     /// Two vertices without an edge between them.
     #[error("there is no edge {},{}; {}", edge.0, edge.1, joined(edge.0, neighbours))]
@@ -222,11 +222,16 @@ impl Selector {
     }
 }
 
+/// What numbers the vertices of a mesh have.
+fn numbers(count: usize) -> String {
+    count.checked_sub(1).map_or("none".into(), |last| format!("vertices 0 to {last}"))
+}
+
 fn check_vertex(mesh: &Mesh, vertex: u32) -> Result<(), MarkError> {
     if mesh.has_vertex(VertexId(vertex)) {
         return Ok(());
     }
-    Err(MarkError::NoSuchVertex { vertex, last: mesh.vertex_bound() as i64 - 1 })
+    Err(MarkError::NoSuchVertex { vertex, count: mesh.vertex_bound() })
 }
 
 /// The half-edge between two vertices given by number.

@@ -57,15 +57,28 @@ impl<'a> Judge<'a> {
         job: &Job,
     ) -> Result<Vec<usize>, FreezeError> {
         let end: Vec<DVec3> = self.active.iter().map(|&v| mesh.position(v)).collect();
-        let mut parts = self.unsure(mesh, samples, &end, job)?;
-        if parts.is_empty() {
-            return Ok(Vec::new());
+        let mut parts = parts(self.active, samples);
+        let is_plain: Vec<bool> = (0..samples.faces.len()).map(|k| samples.is_plain(&self.seen, k)).collect();
+        let (plain, rough): (Vec<usize>, Vec<usize>) = parts.iter().flatten().partition(|&&k| is_plain[k]);
+        let mut before = self.errors_at(&self.start, mesh, samples, &rough, job)?;
+        let mut now = self.errors_at(&end, mesh, samples, &rough, job)?;
+        // The samples of the fit will do for the plain faces of parts that surely became better.
+        let seen_now = samples.errors();
+        for &k in &plain {
+            (before[k], now[k]) = (self.seen.errors[k], seen_now[k]);
         }
-        let faces: Vec<usize> = parts.iter().flatten().copied().collect();
-        let before = self.errors_at(&self.start, mesh, samples, &faces, job)?;
+        parts.retain(|part| {
+            let sure = sum(&before, part).map(|square| SURE * SURE * square);
+            sum(&now, part).exceeds(sure, samples.rounding(part))
+        });
+        let unsure: Vec<usize> = parts.iter().flatten().copied().filter(|k| is_plain[*k]).collect();
+        let measured_before = self.errors_at(&self.start, mesh, samples, &unsure, job)?;
+        let measured_now = self.errors_at(&end, mesh, samples, &unsure, job)?;
+        for k in unsure {
+            (before[k], now[k]) = (measured_before[k], measured_now[k]);
+        }
         let is_worse =
             |now: &[Error], part: &Vec<usize>| sum(now, part).exceeds(sum(&before, part), Error::default());
-        let now = self.errors_at(&end, mesh, samples, &faces, job)?;
         parts.retain(|part| is_worse(&now, part));
         for way in WAYS {
             if parts.is_empty() {
@@ -83,30 +96,6 @@ impl<'a> Judge<'a> {
             mesh.set_position(self.active[number], self.start[number]);
         }
         Ok(back)
-    }
-
-    /// The parts of the surface that did not surely become better; the mesh is at `end`.
-    fn unsure(
-        &self,
-        mesh: &mut Mesh,
-        samples: &Samples,
-        end: &[DVec3],
-        job: &Job,
-    ) -> Result<Vec<Vec<usize>>, FreezeError> {
-        let mut parts = parts(self.active, samples);
-        let is_rough = |k: &usize| !samples.is_plain(&self.seen, *k);
-        let rough: Vec<usize> = parts.iter().flatten().copied().filter(is_rough).collect();
-        let (mut before, mut now) = (self.seen.errors.clone(), samples.errors());
-        let measured_before = self.errors_at(&self.start, mesh, samples, &rough, job)?;
-        let measured = self.errors_at(end, mesh, samples, &rough, job)?;
-        for k in rough {
-            (before[k], now[k]) = (measured_before[k], measured[k]);
-        }
-        parts.retain(|part| {
-            let sure = sum(&before, part).map(|square| SURE * SURE * square);
-            sum(&now, part).exceeds(sure, samples.rounding(part))
-        });
-        Ok(parts)
     }
 
     /// [`errors`](Self::errors) with the active vertices at `positions`, where they stay.
@@ -130,11 +119,14 @@ impl<'a> Judge<'a> {
         numbers: &[usize],
         job: &Job,
     ) -> Result<Vec<Error>, FreezeError> {
+        let mut errors = vec![Error::default(); samples.faces.len()];
+        if numbers.is_empty() {
+            return Ok(errors);
+        }
         let mut numbers: Vec<(FaceId, usize)> = numbers.iter().map(|&k| (samples.faces[k].face, k)).collect();
         numbers.sort_unstable();
         let faces: Vec<FaceId> = numbers.iter().map(|entry| entry.0).collect();
         let surface = LimitSurface::around_during(mesh, &faces, job, "fit", 1.0)?;
-        let mut errors = vec![Error::default(); samples.faces.len()];
         let target = &self.target.surface;
         let is_dear = mesh.grow_faces(&faces).into_iter().any(|face| is_large(mesh, face));
         let per_side = if is_dear { FEW } else { SAMPLES };
