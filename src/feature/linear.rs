@@ -127,7 +127,10 @@ impl Run<'_> {
             self.correct(mesh, &misses, &mut aims);
             corrections += 1;
         };
-        let is_beyond = |v: &VertexId| !(mesh.position(*v).abs().max_element() <= MOST_COORDINATE);
+        let is_beyond = |v: &VertexId| {
+            let position = mesh.position(*v);
+            !position.is_finite() || position.abs().max_element() > MOST_COORDINATE
+        };
         if let Some(vertex) = pass.unfitted.iter().map(|entry| entry.0).find(is_beyond) {
             return Err(FeatureError::Beyond { vertex: vertex.0 });
         }
