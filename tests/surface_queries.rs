@@ -3,10 +3,11 @@
 use crate::common;
 
 use glam::{DVec2, DVec3};
+use std::f64::consts::TAU;
 use std::path::Path;
 use welt::io::{ImportOptions, import};
 use welt::job::Job;
-use welt::mesh::{FaceId, Mesh, Polygons};
+use welt::mesh::{BoundaryRule, FaceId, Mesh, Polygons};
 use welt::subdivision::evaluate;
 use welt::surface::{ClosestOptions, Deviation, Facing, LimitSurface, Sampling, compare, deviation_samples};
 
@@ -347,6 +348,70 @@ fn deviation_of_a_shifted_plane_is_the_shift() {
     assert_eq!(compared.both.samples, 2 * 36 * 16);
     assert!((compared.both.rms - 0.5).abs() < 1e-12);
     assert!(compared.first_to_second.at.expect("a place").signed < 0.0);
+}
+
+/// A unit square below two sheets that no normal of it meets within a tenth of their size: what is closest comes from the
+/// whole surface. Height 1 where the lower sheet, which begins at x = 0.95 and height 0.5, is further away.
+#[test]
+fn deviations_without_a_hit_go_to_the_closest_point() {
+    let flat = |sheets: &[[f64; 5]]| {
+        let mut polygons = Polygons::default();
+        for (&[x0, x1, y0, y1, z], first) in sheets.iter().zip((0..).step_by(4)) {
+            let corners = [(x0, y0), (x1, y0), (x1, y1), (x0, y1)];
+            polygons.positions.extend(corners.map(|(x, y)| DVec3::new(x, y, z)));
+            polygons.face_sizes.push(4);
+            polygons.face_vertices.extend([first, first + 1, first + 2, first + 3]);
+        }
+        polygons.subdivision.boundary = BoundaryRule::EdgeAndCorner;
+        Mesh::from_polygons(&polygons).expect("sheets")
+    };
+    let below = flat(&[[0.0, 1.0, 0.0, 1.0, 0.0]]);
+    let above = flat(&[[-0.2, 1.2, -0.2, 1.2, 1.0], [0.95, 1.6, -0.2, 1.2, 0.5]]);
+    let compared = compare(&below, &above, Sampling { per_side: 64, threads: 1 }, &Job::new());
+    let found = compared.expect("not cancelled").first_to_second.rms;
+    // The distances are equal where (0.95 - x)^2 + 0.5^2 = 1.
+    let reach = 0.75f64.sqrt();
+    let square = (0.95 - reach) + (reach.powi(3) / 3.0 + 0.25 * reach) + 0.05 * 0.25;
+    assert!((found - square.sqrt()).abs() < 1e-3, "{found} {}", square.sqrt());
+}
+
+/// Beside faces with many corners queries hold more of the surface than elsewhere: against dense sampling.
+#[test]
+fn closest_points_of_a_prism_over_a_polygon_of_forty_sides() {
+    const SIDES: u32 = 40;
+    let mut polygons = Polygons::default();
+    for level in 0..3 {
+        polygons.positions.extend((0..SIDES).map(|i| {
+            let (sin, cos) = (TAU * f64::from(i) / f64::from(SIDES)).sin_cos();
+            DVec3::new(2.0 * cos, 2.0 * sin, f64::from(level))
+        }));
+    }
+    for (level, i) in (0..2).flat_map(|level| (0..SIDES).map(move |i| (level, i))) {
+        let (a, b) = (SIDES * level + i, SIDES * level + (i + 1) % SIDES);
+        polygons.face_sizes.push(4);
+        polygons.face_vertices.extend([a, b, b + SIDES, a + SIDES]);
+    }
+    polygons.face_sizes.extend([SIDES; 2]);
+    polygons.face_vertices.extend((0..SIDES).map(|i| 2 * SIDES + i).chain((0..SIDES).rev()));
+    let mesh = Mesh::from_polygons(&polygons).expect("a prism");
+    let surface = LimitSurface::new(&mesh);
+    const STEPS: u32 = 24;
+    let mut points = Vec::new();
+    for face in mesh.faces() {
+        for corner in 0..surface.patch_count(face) {
+            for k in 0..=STEPS * (STEPS + 2) {
+                let [u, v] = [k % (STEPS + 1), k / (STEPS + 1)].map(|k| f64::from(k) / f64::from(STEPS));
+                points.extend(evaluate(&mesh, face, corner, u, v).map(|at| at.position));
+            }
+        }
+    }
+    let mut random = Random(0x5eed_f041);
+    for _ in 0..300 {
+        let point = random.direction() * 2.5 * random.next() + DVec3::Z;
+        let sampled = points.iter().map(|p| p.distance(point)).fold(f64::INFINITY, f64::min);
+        let foot = surface.closest(point, &ClosestOptions::default()).expect("a foot").distance;
+        assert!(foot <= sampled + 1e-12 && foot >= sampled - 0.05, "{point}: {foot} {sampled}");
+    }
 }
 
 #[test]

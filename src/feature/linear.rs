@@ -10,7 +10,7 @@ use super::{FeatureError, Options, Request, deviation};
 use crate::grammar;
 use crate::job::Job;
 use crate::mark::{self, Mark, Selection, parity};
-use crate::mesh::{FaceId, MOST_COORDINATE, Mesh, Node, Value, VertexId};
+use crate::mesh::{FaceId, Mesh, Node, Value, VertexId, is_place};
 use crate::optimise::{self, FitReport, Target};
 use crate::subdivision::limit_normal;
 use crate::surface::Sampling;
@@ -127,10 +127,7 @@ impl Run<'_> {
             self.correct(mesh, &misses, &mut aims);
             corrections += 1;
         };
-        let is_beyond = |v: &VertexId| {
-            let position = mesh.position(*v);
-            !position.is_finite() || position.abs().max_element() > MOST_COORDINATE
-        };
+        let is_beyond = |v: &VertexId| !is_place(mesh.position(*v));
         if let Some(vertex) = pass.unfitted.iter().map(|entry| entry.0).find(is_beyond) {
             return Err(FeatureError::Beyond { vertex: vertex.0 });
         }

@@ -60,6 +60,8 @@ impl fmt::Display for Report {
             self.fit.steps,
             match self.fit.stop {
                 Stop::Nothing => "nothing to do",
+                Stop::TooCoarse =>
+                    "not done so far from the origin, where numbers are coarser than the edges",
                 Stop::Converged => "converged",
                 Stop::StepLimit => "step limit reached",
             },

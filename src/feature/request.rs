@@ -321,7 +321,7 @@ pub enum FeatureError {
         "vertex {vertex} of the result would lie beyond {MOST_COORDINATE:e}; ask for less, or scale the model"
     )]
     Beyond {
-        /// The vertex, of the mesh as it would have become.
+        /// The vertex, by its number while the feature was applied.
         vertex: u32,
     },
     /// The rules failed.

@@ -1,7 +1,7 @@
 //! The last word on a fit: no part of the surface may be bent more than without one.
 //!
 //! Beside extraordinary vertices and folds curvature changes between the samples of the fit, and folds have several feet to
-//! choose from. There the surface is measured as a report measures it; where that does not show a sure gain, the whole part
+//! choose from. There the surface is measured in the way of reports; where that does not show a sure gain, the whole part
 //! is. The mesh before the fit counts, sharp curves included.
 
 use super::Target;
@@ -19,7 +19,7 @@ const SURE: f64 = 0.9;
 /// Parts of the way from the start to the fit that are tried in turn where the whole way is too far.
 const WAYS: [f64; 3] = [0.5, 0.25, 0.125];
 
-/// Samples per side beside faces with many corners, where feet are dear.
+/// Places per side where faces with many corners or vertices with many edges are near, and feet dear.
 const FEW: usize = 2;
 
 /// The surface before a fit.
@@ -31,6 +31,8 @@ pub(super) struct Judge<'a> {
     target: &'a Target,
     /// Weight of the slopes as a length.
     slope: f64,
+    /// Places per side of a face at which the surface is measured.
+    per_side: usize,
 }
 
 impl<'a> Judge<'a> {
@@ -44,8 +46,18 @@ impl<'a> Judge<'a> {
         slope: f64,
     ) -> Self {
         let start = active.iter().map(|&v| mesh.position(v)).collect();
+        let faces: Vec<FaceId> = samples.faces.iter().map(|face| face.face).collect();
+        let is_dear = mesh.grow_faces(&faces).into_iter().any(|face| is_large(mesh, face));
         // The reach is two edges.
-        Self { active, start, seen: samples.snapshot(), target, slope: 0.5 * slope * target.reach }
+        let slope = 0.5 * slope * target.reach;
+        Self {
+            active,
+            start,
+            seen: samples.snapshot(),
+            target,
+            slope,
+            per_side: if is_dear { FEW } else { SAMPLES },
+        }
     }
 
     /// Takes each part of the surface that is worse than it was part of the way back, at last all of it; returns the numbers
@@ -128,9 +140,8 @@ impl<'a> Judge<'a> {
         let faces: Vec<FaceId> = numbers.iter().map(|entry| entry.0).collect();
         let surface = LimitSurface::around_during(mesh, &faces, job, "fit", 1.0)?;
         let target = &self.target.surface;
-        let is_dear = mesh.grow_faces(&faces).into_iter().any(|face| is_large(mesh, face));
-        let per_side = if is_dear { FEW } else { SAMPLES };
-        for sample in deviation_samples(&surface, |_| true, target, Sampling { per_side, threads: 1 }, job)? {
+        let sampling = Sampling { per_side: self.per_side, threads: 1 };
+        for sample in deviation_samples(&surface, |_| true, target, sampling, job)? {
             let number = numbers.binary_search_by_key(&sample.face, |entry| entry.0);
             if let Ok(number) = number.map(|index| numbers[index].1) {
                 let distance = sample.signed.powi(2);

@@ -97,6 +97,8 @@ impl Method {
 pub enum Stop {
     /// Nothing was asked for, or nothing was active.
     Nothing,
+    /// So far from the origin numbers are too coarse for the edges: nothing could be measured, and nothing was moved.
+    TooCoarse,
     /// Every limit point is closer to the frozen surface than the tolerance.
     Converged,
     /// The allowed number of steps was taken, or as many as came closer.
@@ -117,8 +119,7 @@ pub struct FitReport {
     /// Largest distance to the frozen surface after the last step, of a limit point along its line or, for the surface
     /// fits, of a sample (model units).
     pub residual: f64,
-    /// Active vertices that were held where they are, because the surface would have become worse than without a fit; all
-    /// where numbers are so coarse (far from the origin) that nothing could be measured.
+    /// Active vertices that were held where they are, because the surface would have become worse than without a fit.
     pub held: usize,
     /// Active vertices whose line and closest point found no frozen surface, at once or, where steps are many, again and
     /// again; they were not fitted, or no further.
@@ -214,7 +215,7 @@ pub fn fit(
     }
     report.active = active.len();
     if target.surface.rounding() > COARSE * target.reach {
-        report.held = active.len();
+        report.stop = Stop::TooCoarse;
         return Ok(report);
     }
     let (rim, mut inner): (Vec<VertexId>, Vec<VertexId>) =
@@ -231,11 +232,15 @@ pub fn fit(
         Method::Fit => Samples::new(mesh, active, target, ORDER, SLOPE, true, false),
         Method::FitSlide => Samples::new(mesh, active, target, ORDER, SLOPE_SLIDING, true, true),
     };
-    samples.evaluate(mesh, job)?;
-    let judge = slide.then(|| Judge::new(mesh, active, target, &samples, SLOPE_SLIDING));
+    let judge = if slide {
+        samples.evaluate(mesh, job)?;
+        Some(Judge::new(mesh, active, target, &samples, SLOPE_SLIDING))
+    } else {
+        None
+    };
     // The limit of a vertex on a sharp curve depends on such vertices only, so the rim comes first.
     let (rim_steps, rim_gap) = fit_rim(mesh, &rim, target, method, job)?;
-    if rim_steps > 0 {
+    if rim_steps > 0 || !slide {
         samples.evaluate(mesh, job)?;
     }
     let mut missed = Vec::new();

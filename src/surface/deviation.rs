@@ -216,7 +216,7 @@ fn angle(a: DVec3, b: DVec3) -> f64 {
 
 /// [`LimitSurface::compatible_foot`] of a point of another surface, fast where the surfaces are close: the foot near `start`,
 /// where it is closer than `close` and they lie along each other; else that or the foot near the hit of the normal, where it
-/// is no further away than the hit.
+/// is no further away than the hit. Without a hit the whole surface is searched.
 fn foot_on(to: &LimitSurface, start: Option<Foot>, point: &SurfacePoint, close: f64) -> Option<Foot> {
     let SurfacePoint { position, normal, .. } = *point;
     let near = |face, corner, u, v| {
@@ -227,8 +227,12 @@ fn foot_on(to: &LimitSurface, start: Option<Foot>, point: &SurfacePoint, close: 
         return Some(foot);
     }
     let hit = to.nearest_line_hit(position, normal, NEAR * to.size(), normal);
-    let bound = hit.as_ref().map_or(f64::INFINITY, |hit| hit.s.abs());
-    hit.and_then(|hit| near(hit.face, hit.corner, hit.u, hit.v))
+    let Some(hit) = hit else {
+        let bound = followed.map_or(f64::INFINITY, |foot| foot.distance);
+        return to.compatible_foot_within(position, normal, bound);
+    };
+    let bound = hit.s.abs();
+    near(hit.face, hit.corner, hit.u, hit.v)
         .into_iter()
         .chain(followed)
         .filter(|foot| foot.distance <= bound)

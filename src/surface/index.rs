@@ -3,6 +3,7 @@
 use super::disc::Disc;
 use super::places::Entry;
 use super::tree::Tree;
+use super::valence::MOST;
 use super::{Bicubic, LimitSurface};
 use crate::memory::{self, OutOfMemory};
 use crate::subdivision::patch_corner::{Corner, Points};
@@ -13,11 +14,8 @@ use smallvec::SmallVec;
 const LEVELS: u32 = 4;
 /// The same at a vertex with many edges: there levels shrink less and are dear to make.
 const LEVELS_OF_MANY: u32 = 8;
-/// Edges that are many.
-const MANY: usize = 16;
-
 fn levels(edges: usize) -> u32 {
-    if edges > MANY { LEVELS_OF_MANY } else { LEVELS }
+    if edges > MOST { LEVELS_OF_MANY } else { LEVELS }
 }
 
 /// Where a piece lies: a square of a patch, turned by quarter turns.
@@ -115,7 +113,7 @@ impl Rest {
 /// those of its pieces are taken for as many levels as are held, or every query there would look at all of them.
 fn hull(corner: &mut Corner, scratch: &mut Points) -> SmallVec<[DVec3; 16]> {
     let mut points = SmallVec::new();
-    if corner.spokes.len() > MANY {
+    if corner.spokes.len() > MOST {
         for _ in 0..LEVELS_OF_MANY {
             for grid in corner.refine(scratch) {
                 let piece = Bicubic::from_bspline(&grid);

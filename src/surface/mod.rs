@@ -119,7 +119,7 @@ impl LimitSurface {
         freeze::freeze(mesh, &existing(mesh, faces)?, |done| Ok(job.step("freeze", done)?))
     }
 
-    /// [`around`](Self::around) within a stage of a job that is done to this part.
+    /// [`around`](Self::around) within a stage of a job of which the share `done` (0 to 1) is done.
     ///
     /// # Errors
     /// [`FreezeError`].

@@ -13,7 +13,7 @@ use glam::DVec3;
 /// Levels that are tabulated; a parameter lies deeper with a chance of 4^-6.
 pub(super) const LEVELS: usize = 6;
 /// Vertices with more edges are refined level by level, which costs less then.
-const MOST: usize = 16;
+pub(super) const MOST: usize = 16;
 /// Points of a quad's ring that do not belong to the fan round the vertex.
 const OUTER: usize = 7;
 

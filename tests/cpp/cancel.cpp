@@ -164,6 +164,10 @@ void many_readers() {
     std::atomic<int> different{0};
     for (int round = 0; round < 2; ++round) {
         Handles const shared;
+#if defined(__SANITIZE_THREAD__)
+        // Who comes second waits in the standard library of Rust, which is not instrumented.
+        different += answers(shared) != alone;
+#endif
         std::vector<std::thread> readers;
         for (int i = 0; i < 4; ++i) readers.emplace_back([&] { different += answers(shared) != alone; });
         for (std::thread& reader : readers) reader.join();

@@ -164,7 +164,12 @@ impl<'a> Search<'a> {
             return false;
         }
         self.parts += 1;
-        let last = convexity.convex || square.halvings >= MAX_HALVINGS || self.parts > MAX_PARTS;
+        let is_rounding = || {
+            let (low, high) = bicubic.bounds();
+            (high - low).length() <= self.surface.tolerance
+        };
+        let last =
+            convexity.convex || square.halvings >= MAX_HALVINGS || self.parts > MAX_PARTS || is_rounding();
         // Newton's method from the middle of a whole piece mostly finds the foot at once; the search that
         // follows then only has to show that nothing is closer.
         if last || square.halvings == 0 {
