@@ -188,7 +188,7 @@ fn limits_of_files_on_the_command_line() {
     check("faces").fails(2, &["write NAME=COUNT"]);
     for count in ["-1", "1e3", "", "many", "18446744073709551616"] {
         check(&format!("faces={count}"))
-            .fails(2, &[&format!("{count} is no whole number from 0 to 2^64 - 1")]);
+            .fails(2, &[&format!("'{count}' is no whole number from 0 to 2^64 - 1")]);
     }
 }
 
@@ -219,5 +219,5 @@ fn limits_of_rules_on_the_command_line() {
     groove(&["width=3"])
         .fails(2, &["there is no limit width", "applications, steps, changes, depth, growth, extra"]);
     groove(&["steps"]).fails(2, &["write NAME=COUNT"]);
-    groove(&["seconds=0.5"]).fails(2, &["0.5 is no whole number"]);
+    groove(&["seconds=0.5"]).fails(2, &["'0.5' is no whole number"]);
 }

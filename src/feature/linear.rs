@@ -103,6 +103,7 @@ impl Run<'_> {
                 mesh.rollback(checkpoint);
                 region = mesh.grow_faces(&wider);
                 target = Target::freeze(mesh, &region, job)?;
+                self.taken_back.clear();
                 continue;
             }
             let misses = self.misses(&pass);
@@ -205,7 +206,13 @@ impl Run<'_> {
         job.step("fit", 0.3)?;
         let active = optimise::active_set(mesh, &changed, self.options.method);
         let unfitted = active.iter().map(|&v| (v, mesh.position(v))).collect();
-        let fit = optimise::fit(mesh, &active, target, self.options.method, job)?;
+        let is_free = |v: &VertexId| self.taken_back.binary_search(v).is_err();
+        let free: Vec<VertexId> = active.iter().copied().filter(is_free).collect();
+        let mut fit = optimise::fit(mesh, &free, target, self.options.method, job)?;
+        fit.active = active.len();
+        fit.held += active.len() - free.len();
+        self.taken_back.extend_from_slice(&fit.taken_back);
+        self.taken_back.sort_unstable();
         self.clock.lap("fit");
 
         job.step("displace", 0.6)?;

@@ -55,6 +55,8 @@ pub(super) struct Run<'a> {
     /// Ids below these were there before.
     pub(super) first_vertex: usize,
     pub(super) first_face: usize,
+    /// Vertices that the fit of an earlier pass took back, ascending: it would come to the same in the next one.
+    pub(super) taken_back: Vec<VertexId>,
     pub(super) clock: Clock,
 }
 
@@ -101,6 +103,7 @@ impl<'a> Run<'a> {
             before: Counts { vertices, edges, faces },
             first_vertex: mesh.vertex_bound(),
             first_face: mesh.face_bound(),
+            taken_back: Vec::new(),
             clock: Clock::start(),
         };
         if !request.features.is_empty() {

@@ -59,6 +59,7 @@ impl fmt::Display for Report {
             self.fit.active,
             self.fit.steps,
             match self.fit.stop {
+                Stop::Nothing if self.fit.held > 0 => "nothing to gain",
                 Stop::Nothing => "nothing to do",
                 Stop::TooCoarse =>
                     "not done so far from the origin, where numbers are coarser than the edges",

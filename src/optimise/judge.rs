@@ -60,14 +60,14 @@ impl<'a> Judge<'a> {
         }
     }
 
-    /// Takes each part of the surface that is worse than it was part of the way back, at last all of it; returns the numbers
-    /// in `active` of the vertices that are back at the start. The samples are evaluated at the positions of the mesh.
+    /// Takes each part of the surface that is worse than it was part of the way back, at last all of it; returns the
+    /// vertices that are back at the start, ascending. The samples are evaluated at the positions of the mesh.
     pub(super) fn settle(
         &self,
         mesh: &mut Mesh,
         samples: &Samples,
         job: &Job,
-    ) -> Result<Vec<usize>, FreezeError> {
+    ) -> Result<Vec<VertexId>, FreezeError> {
         let end: Vec<DVec3> = self.active.iter().map(|&v| mesh.position(v)).collect();
         let mut parts = parts(self.active, samples);
         let is_plain: Vec<bool> = (0..samples.faces.len()).map(|k| samples.is_plain(&self.seen, k)).collect();
@@ -107,7 +107,7 @@ impl<'a> Judge<'a> {
         for &number in &back {
             mesh.set_position(self.active[number], self.start[number]);
         }
-        Ok(back)
+        Ok(back.into_iter().map(|number| self.active[number]).collect())
     }
 
     /// [`errors`](Self::errors) with the active vertices at `positions`, where they stay.

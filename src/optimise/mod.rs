@@ -121,6 +121,9 @@ pub struct FitReport {
     pub residual: f64,
     /// Active vertices that were held where they are, because the surface would have become worse than without a fit.
     pub held: usize,
+    /// Of these the ones that were moved and taken back to where they were, because the result was worse, ascending.
+    #[serde(skip)]
+    pub taken_back: Vec<VertexId>,
     /// Active vertices whose line and closest point found no frozen surface, at once or, where steps are many, again and
     /// again; they were not fitted, or no further.
     pub missed: Vec<u32>,
@@ -208,6 +211,7 @@ pub fn fit(
         stop: Stop::Nothing,
         residual: 0.0,
         held: 0,
+        taken_back: Vec::new(),
         missed: Vec::new(),
     };
     if method == Method::None || active.is_empty() {
@@ -276,7 +280,8 @@ pub fn fit(
     report.held = outcome.held;
     // Moved rims were not seen by the samples of the fit.
     if let Some(judge) = judge.filter(|_| !outcome.is_clear || rim_steps > 0) {
-        report.held = report.held.max(judge.settle(mesh, &samples, job)?.len());
+        report.taken_back = judge.settle(mesh, &samples, job)?;
+        report.held = report.held.max(report.taken_back.len());
     }
     missed.sort_unstable();
     report.missed = missed;
