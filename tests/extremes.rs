@@ -7,6 +7,7 @@ use welt::io::{self, Format, ImportOptions};
 use welt::job::Job;
 use welt::mark::{Selection, Selector};
 use welt::mesh::{Defect, FaceId, HalfEdgeId, Mesh, Polygons};
+use welt::optimise::Stop;
 use welt::subdivision::{limit_points, refine};
 use welt::surface::{ClosestOptions, LimitSurface};
 
@@ -211,4 +212,20 @@ fn details_of_a_micrometre_at_a_billion_keep_what_numbers_hold() {
         grooved.iter().zip(&expected).map(|(p, q)| (*p - far - *q).abs().max_element()).fold(0.0, f64::max);
     println!("lost by a groove at 1e9: {error:e}");
     assert!(error < 2e-5, "{error:e}");
+}
+
+/// Edges of a micrometre, 10^9 away: nothing can be measured there, which the report says.
+#[test]
+fn nothing_is_fitted_where_numbers_are_coarser_than_edges() {
+    let groove = |origin| {
+        let mut mesh = Mesh::from_polygons(&sheet(1e-6, origin)).expect("a sheet");
+        let selector = Selector::parse("ring:40,41").expect("a selector");
+        let selection = Selection::resolve(&mesh, &[selector]).expect("a ring");
+        let request = Request::features(&["groove"], &["width=40%", "depth=0"]).expect("a request");
+        feature::apply(&mut mesh, &selection, &request, &Options::default(), &Job::new()).expect("applied")
+    };
+    let (far, here) = (groove(DVec3::splat(1e9)), groove(DVec3::ZERO));
+    assert_eq!(far.fit.stop, Stop::TooCoarse);
+    assert!(far.to_string().contains("not done so far from the origin"), "{far}");
+    assert_ne!(here.fit.stop, Stop::TooCoarse);
 }
